@@ -1,0 +1,68 @@
+#include "types/tet_mesh.h"
+
+#include <algorithm>
+
+namespace sherd {
+
+void hashValue(Hasher& hasher, const TetMesh& mesh) {
+  if (mesh.surface) hashValue(hasher, *mesh.surface);
+  hasher.add(mesh.nodes).add(mesh.tets).add(mesh.heldBegin).add(mesh.held).add(mesh.insideFraction);
+}
+
+std::size_t byteSize(const TetMesh& mesh) {
+  return (mesh.surface ? byteSize(*mesh.surface) : 0) + mesh.nodes.size() * sizeof(Vec3) +
+         mesh.tets.size() * (2 * sizeof(Tetra) + sizeof(double)) + mesh.boundary.size() * sizeof(Triangle) +
+         (mesh.held.size() + mesh.heldBegin.size()) * sizeof(Index);
+}
+
+double tetVolume(const TetMesh& mesh, std::size_t t) {
+  const Tetra& tet = mesh.tets[t];
+  const Vec3& a = mesh.nodes[at(tet[0])];
+  const Vec3 b = mesh.nodes[at(tet[1])] - a, c = mesh.nodes[at(tet[2])] - a, d = mesh.nodes[at(tet[3])] - a;
+  return b.cross(c).dot(d) / 6;
+}
+
+std::vector<double> lumpedVolumes(const TetMesh& mesh) {
+  std::vector<double> volume(mesh.nodes.size(), 0.0);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const double share = 0.25 * tetVolume(mesh, t) * mesh.insideFraction[t];
+    for (const Index n : mesh.tets[t]) volume[at(n)] += share;
+  }
+  return volume;
+}
+
+void connectTets(TetMesh& mesh) {
+  struct Side {
+    Triangle key;
+    Index tet, face;
+  };
+  std::vector<Side> sides;
+  sides.reserve(4 * mesh.tets.size());
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (int f = 0; f < 4; ++f) {
+      Triangle key;
+      for (std::size_t c = 0; c < 3; ++c) key[c] = mesh.tets[t][static_cast<std::size_t>(kTetraFace[f][c])];
+      std::sort(key.begin(), key.end());
+      sides.push_back({key, static_cast<Index>(t), f});
+    }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.key, a.tet) < std::tie(b.key, b.tet);
+  });
+  mesh.neighbours.assign(mesh.tets.size(), Tetra{-1, -1, -1, -1});
+  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+    const Side &a = sides[i], &b = sides[i + 1];
+    if (a.key != b.key) continue;
+    mesh.neighbours[at(a.tet)][at(a.face)] = b.tet;
+    mesh.neighbours[at(b.tet)][at(b.face)] = a.tet;
+  }
+  mesh.boundary.clear();
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (std::size_t f = 0; f < 4; ++f) {
+      if (mesh.neighbours[t][f] >= 0) continue;
+      Triangle face;
+      for (std::size_t c = 0; c < 3; ++c) face[c] = mesh.tets[t][static_cast<std::size_t>(kTetraFace[f][c])];
+      mesh.boundary.push_back(face);
+    }
+}
+
+}  // namespace sherd

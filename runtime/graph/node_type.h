@@ -1,0 +1,258 @@
+// What a node type tells of itself: ports, parameters and how to run it. One table per node, written with
+// NodeBuilder in <step>_node.cpp, from which JSON reading, hashing, help and schema all derive.
+//
+//   NodeType cvdNode() {
+//     return NodeBuilder<CvdParams>("CVD", 1, "Places the cells that the body breaks into.")
+//         .input<WeightField>("weights", "what each node weighs")
+//         .optionalInput<Sites>("sites", "sites to start from")
+//         .integer("degree", &CvdParams::degree, {.min = 0, .help = "number of sites; 0: as many as `sites` has"})
+//         .choice("labels", &CvdParams::labels, {{"exact", Labels::Exact}, {"flood", Labels::Flood}}, "…")
+//         .output<Partition>("cells", "every node's nearest site")
+//         .run([](const CvdParams& params, NodeIo& io) -> Result<void> {
+//           SHERD_ASSIGN(Partition cells, cvd(*io.in<WeightField>("weights"), …, params, io.exec()));
+//           io.out("cells", std::move(cells));
+//           return {};
+//         });
+//   }
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/exec.h"
+#include "base/result.h"
+#include "graph/value.h"
+
+namespace sherd {
+
+/// A parameter's value after reading: what JSON gave, checked and converted to the parameter's kind.
+using ParamValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
+
+enum class ParamKind {
+  Boolean,
+  Integer,
+  Number,
+  Vector3,          ///< three numbers
+  Text,
+  Choice,           ///< one of a list of words
+  InputFile,        ///< a file that is read: resolved to an absolute path; its content enters the key
+  OutputFile,       ///< a file that is written: resolved to an absolute path
+  OutputDirectory,  ///< a directory that is written into: resolved to an absolute path
+};
+
+struct ParamInfo {
+  std::string name;
+  ParamKind kind = ParamKind::Number;
+  std::string unit;  ///< "m", "kg/m³", …; empty for a pure number
+  ParamValue fallback;                               ///< the default
+  double min = -std::numeric_limits<double>::infinity();  ///< for numbers, per component for vectors
+  double max = std::numeric_limits<double>::infinity();
+  bool openMin = false, openMax = false;             ///< the limit itself is not allowed
+  bool required = false;                             ///< has no default: must be set or wired
+  std::vector<std::string> choices;
+  std::string help;
+};
+
+struct PortInfo {
+  std::string name;
+  std::string type;  ///< ValueType::name
+  bool required = true;
+  std::string help;
+};
+
+/// What a running node sees: its inputs, its outputs, the user.
+class NodeIo {
+ public:
+  explicit NodeIo(const Exec& exec) : exec_(exec) {}
+
+  const Exec& exec() const { return exec_; }
+  /// The value wired to `port`. Never null for a required input; null for an optional one left open.
+  template <class T>
+  std::shared_ptr<const T> in(const std::string& port) const {
+    const auto found = inputs_.find(port);
+    return found == inputs_.end() ? nullptr : found->second.as<T>();
+  }
+  template <class T>
+  void out(const std::string& port, T value) {
+    outputs_[port] = Value::of<T>(std::make_shared<const T>(std::move(value)));
+  }
+  template <class T>
+  void outShared(const std::string& port, std::shared_ptr<const T> value) {
+    outputs_[port] = Value::of<T>(std::move(value));
+  }
+  /// Tells the runtime of a file that was written, by its absolute path.
+  void wrote(std::string path) { written_.push_back(std::move(path)); }
+
+  void setInput(const std::string& port, Value value) { inputs_[port] = std::move(value); }
+  const std::map<std::string, Value>& outputs() const { return outputs_; }
+  const std::vector<std::string>& written() const { return written_; }
+
+ private:
+  const Exec& exec_;
+  std::map<std::string, Value> inputs_, outputs_;
+  std::vector<std::string> written_;
+};
+
+using ParamValues = std::map<std::string, ParamValue>;
+
+struct NodeType {
+  std::string name;
+  int version = 1;         ///< the interface's version: N of Type@N
+  int implementation = 1;  ///< raised when the same inputs and parameters give another result
+  std::string help;
+  std::vector<PortInfo> inputs, outputs;  ///< the first output is what "node" without a port means
+  std::vector<ParamInfo> params;
+  bool writesFiles = false;  ///< an exporter: run whenever asked for, never taken from a cache
+  /// Runs the node. `params` holds every parameter, checked. May throw only what libraries throw.
+  std::function<Result<void>(const ParamValues& params, NodeIo& io)> run;
+
+  const PortInfo* input(const std::string& port) const;
+  const PortInfo* output(const std::string& port) const;
+  const ParamInfo* param(const std::string& name) const;
+};
+
+/// Options of a numeric parameter.
+struct NumberOptions {
+  std::string unit;
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool openMin = false, openMax = false;
+  std::string help;
+};
+
+/// Binds a plain parameter struct P (whose member initialisers are the defaults) to a NodeType.
+template <class P>
+class NodeBuilder {
+ public:
+  NodeBuilder(std::string name, int version, std::string help) {
+    type_.name = std::move(name);
+    type_.version = version;
+    type_.help = std::move(help);
+  }
+
+  template <class T>
+  NodeBuilder& input(std::string name, std::string help) {
+    type_.inputs.push_back({std::move(name), valueTypeName<T>(), true, std::move(help)});
+    return *this;
+  }
+  template <class T>
+  NodeBuilder& optionalInput(std::string name, std::string help) {
+    type_.inputs.push_back({std::move(name), valueTypeName<T>(), false, std::move(help)});
+    return *this;
+  }
+  template <class T>
+  NodeBuilder& output(std::string name, std::string help) {
+    type_.outputs.push_back({std::move(name), valueTypeName<T>(), false, std::move(help)});
+    return *this;
+  }
+  NodeBuilder& implementation(int number) {
+    type_.implementation = number;
+    return *this;
+  }
+  NodeBuilder& writesFiles() {
+    type_.writesFiles = true;
+    return *this;
+  }
+
+  NodeBuilder& number(std::string name, double P::*member, NumberOptions options) {
+    return add(std::move(name), ParamKind::Number, P{}.*member, std::move(options),
+               [member](P& p, const ParamValue& v) { p.*member = std::get<double>(v); });
+  }
+  /// `member` may be any integral type; values are range-checked against min and max before.
+  template <class I>
+    requires(std::is_integral_v<I> && !std::is_same_v<I, bool>)
+  NodeBuilder& integer(std::string name, I P::*member, NumberOptions options) {
+    return add(std::move(name), ParamKind::Integer, static_cast<std::int64_t>(P{}.*member), std::move(options),
+               [member](P& p, const ParamValue& v) { p.*member = static_cast<I>(std::get<std::int64_t>(v)); });
+  }
+  NodeBuilder& boolean(std::string name, bool P::*member, std::string help) {
+    return add(std::move(name), ParamKind::Boolean, P{}.*member, {.unit = {}, .help = std::move(help)},
+               [member](P& p, const ParamValue& v) { p.*member = std::get<bool>(v); });
+  }
+  /// V is a vector of three doubles with operator[] (Eigen::Vector3d).
+  template <class V>
+  NodeBuilder& vector3(std::string name, V P::*member, NumberOptions options) {
+    const V v = P{}.*member;
+    return add(std::move(name), ParamKind::Vector3, std::vector<double>{v[0], v[1], v[2]}, std::move(options),
+               [member](P& p, const ParamValue& value) {
+                 const auto& numbers = std::get<std::vector<double>>(value);
+                 for (int i = 0; i < 3; ++i) (p.*member)[i] = numbers[static_cast<std::size_t>(i)];
+               });
+  }
+  NodeBuilder& text(std::string name, std::string P::*member, std::string help) {
+    return addText(std::move(name), ParamKind::Text, member, std::move(help));
+  }
+  /// File parameters without a default (an empty string) must be set.
+  NodeBuilder& inputFile(std::string name, std::string P::*member, std::string help) {
+    return addText(std::move(name), ParamKind::InputFile, member, std::move(help));
+  }
+  NodeBuilder& outputFile(std::string name, std::string P::*member, std::string help) {
+    return addText(std::move(name), ParamKind::OutputFile, member, std::move(help));
+  }
+  NodeBuilder& outputDirectory(std::string name, std::string P::*member, std::string help) {
+    return addText(std::move(name), ParamKind::OutputDirectory, member, std::move(help));
+  }
+  /// One of a list of words, each standing for a value of the enumeration E.
+  template <class E>
+  NodeBuilder& choice(std::string name, E P::*member, std::vector<std::pair<std::string, E>> words,
+                      std::string help) {
+    std::string fallback;
+    for (const auto& [word, value] : words)
+      if (value == P{}.*member) fallback = word;
+    add(std::move(name), ParamKind::Choice, fallback, {.unit = {}, .help = std::move(help)},
+        [member, words](P& p, const ParamValue& v) {
+          for (const auto& [word, value] : words)
+            if (word == std::get<std::string>(v)) p.*member = value;
+        });
+    for (const auto& [word, value] : words) type_.params.back().choices.push_back(word);
+    return *this;
+  }
+
+  /// Ends the table: f(const P&, NodeIo&) -> Result<void>.
+  template <class F>
+  NodeType run(F f) {
+    type_.run = [setters = std::move(setters_), f](const ParamValues& values, NodeIo& io) -> Result<void> {
+      P params{};
+      for (const auto& [name, set] : setters) set(params, values.at(name));
+      return f(static_cast<const P&>(params), io);
+    };
+    return std::move(type_);
+  }
+
+ private:
+  using Setter = std::function<void(P&, const ParamValue&)>;
+
+  NodeBuilder& add(std::string name, ParamKind kind, ParamValue fallback, NumberOptions options, Setter setter) {
+    setters_.emplace_back(name, std::move(setter));
+    ParamInfo info;
+    info.name = std::move(name);
+    info.kind = kind;
+    info.fallback = std::move(fallback);
+    info.unit = std::move(options.unit);
+    info.min = options.min;
+    info.max = options.max;
+    info.openMin = options.openMin;
+    info.openMax = options.openMax;
+    info.help = std::move(options.help);
+    type_.params.push_back(std::move(info));
+    return *this;
+  }
+  NodeBuilder& addText(std::string name, ParamKind kind, std::string P::*member, std::string help) {
+    const std::string fallback = P{}.*member;
+    add(std::move(name), kind, fallback, {.unit = {}, .help = std::move(help)},
+        [member](P& p, const ParamValue& v) { p.*member = std::get<std::string>(v); });
+    type_.params.back().required = kind != ParamKind::Text && fallback.empty();
+    return *this;
+  }
+
+  NodeType type_;
+  std::vector<std::pair<std::string, Setter>> setters_;
+};
+
+}  // namespace sherd
