@@ -36,6 +36,7 @@ struct FractureCounts {
   std::size_t detachedParts = 0;       ///< parts of cells that became pieces of their own
   std::size_t mergedParts = 0;         ///< parts below the minimum volume that joined a neighbour
   std::size_t emptyCells = 0;          ///< sites that hold no volume inside the surface
+  std::size_t forcedTriangles = 0;     ///< triangles that rounding left flat or overlapping
 };
 
 struct Fragments {

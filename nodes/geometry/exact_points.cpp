@@ -1,0 +1,174 @@
+#include "geometry/exact_points.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Exact_rational.h>
+#include <CGAL/Interval_nt.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace sherd {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Rational = CGAL::Exact_rational;
+using Interval = CGAL::Interval_nt<true>;
+
+Kernel::Point_3 toPoint(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+/// A product of displacements ε(row, column): a matching of rows (points, by ascending number) to coordinates.
+struct Term {
+  std::array<int, 4> column{-1, -1, -1, -1};  ///< per row, −1: this row is not displaced
+  std::uint32_t weight = 0;                   ///< exponent of ε: the smaller, the greater the displacement
+};
+
+/// All 73 terms of the determinant's polynomial in ε, from the greatest to the least.
+const std::vector<Term>& terms() {
+  static const std::vector<Term> all = [] {
+    std::vector<Term> list;
+    for (int code = 0; code < 256; ++code) {
+      Term term;
+      std::array<int, 3> uses{};
+      for (int row = 0; row < 4; ++row) {
+        const int column = ((code >> (2 * row)) & 3) - 1;
+        term.column[static_cast<std::size_t>(row)] = column;
+        if (column < 0) continue;
+        ++uses[static_cast<std::size_t>(column)];
+        term.weight += 1u << (3 * row + column);
+      }
+      if (*std::max_element(uses.begin(), uses.end()) <= 1) list.push_back(term);
+    }
+    std::sort(list.begin(), list.end(), [](const Term& a, const Term& b) { return a.weight < b.weight; });
+    return list;
+  }();
+  return all;
+}
+
+struct Permutation {
+  std::array<int, 4> column;
+  int sign;
+};
+
+const std::vector<Permutation>& permutations() {
+  static const std::vector<Permutation> all = [] {
+    std::vector<Permutation> list;
+    std::array<int, 4> p{0, 1, 2, 3};
+    do {
+      int sign = 1;
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = i + 1; j < 4; ++j)
+          if (p[i] > p[j]) sign = -sign;
+      list.push_back({p, sign});
+    } while (std::next_permutation(p.begin(), p.end()));
+    return list;
+  }();
+  return all;
+}
+
+/// The coefficient of `term` in det of the rows (x, y, z, 1): the permutations that contain the matching.
+int coefficientSign(const std::array<const Vec3*, 4>& rows, const Term& term) {
+  Rational sum = 0;
+  for (const Permutation& p : permutations()) {
+    bool contains = true;
+    Rational product = p.sign;
+    for (std::size_t row = 0; row < 4 && contains; ++row) {
+      if (term.column[row] >= 0) contains = term.column[row] == p.column[row];
+      else if (p.column[row] < 3) product *= Rational((*rows[row])[p.column[row]]);
+    }
+    if (contains) sum += product;
+  }
+  return sum > 0 ? 1 : sum < 0 ? -1 : 0;
+}
+
+int displacedOrientation(std::array<std::pair<Index, const Vec3*>, 4> points) {
+  int sign = -1;  // det of the rows (p, 1) is −det[q−p, r−p, s−p]
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; j + 1 < 4 - i; ++j)
+      if (points[j].first > points[j + 1].first) {
+        std::swap(points[j], points[j + 1]);
+        sign = -sign;
+      }
+  const std::array<const Vec3*, 4> rows{points[0].second, points[1].second, points[2].second, points[3].second};
+  for (const Term& term : terms())
+    if (const int s = coefficientSign(rows, term); s != 0) return sign * s;
+  return sign;  // not reached: the last terms have coefficient ±1
+}
+
+template <class Number>
+Number determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  std::array<std::array<Number, 3>, 3> m;
+  const Vec3* rows[] = {&b, &c, &d};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      m[i][k] = Number((*rows[i])[static_cast<Eigen::Index>(k)]) - Number(a[static_cast<Eigen::Index>(k)]);
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
+/// Distances of p and q from a plane, up to one common factor, both made non-negative.
+template <class Number>
+struct Depths {
+  Number p, q;
+};
+
+template <class Number>
+Depths<Number> depths(const ExactPoints& points, Index p, Index q, const Triangle& t) {
+  const Number dp = determinant<Number>(points[t[0]], points[t[1]], points[t[2]], points[p]);
+  const Number dq = determinant<Number>(points[t[0]], points[t[1]], points[t[2]], points[q]);
+  return {dp, dq};
+}
+
+}  // namespace
+
+int ExactPoints::orientation(Index a, Index b, Index c, Index d) const {
+  const Vec3 &pa = points_[at(a)], &pb = points_[at(b)], &pc = points_[at(c)], &pd = points_[at(d)];
+  const auto exact = CGAL::orientation(toPoint(pa), toPoint(pb), toPoint(pc), toPoint(pd));
+  if (exact != CGAL::COPLANAR) return exact == CGAL::POSITIVE ? 1 : -1;
+  return displacedOrientation({{{a, &pa}, {b, &pb}, {c, &pc}, {d, &pd}}});
+}
+
+bool ExactPoints::crosses(Index p, Index q, const Triangle& t) const {
+  if (side(t, p) == side(t, q)) return false;
+  const int first = orientation(p, q, t[0], t[1]);
+  return first == orientation(p, q, t[1], t[2]) && first == orientation(p, q, t[2], t[0]);
+}
+
+int ExactPoints::compareCrossings(Index p, Index q, const Triangle& s, const Triangle& t) const {
+  // The crossing is at depth_p / (depth_p − depth_q) of the way; compared crosswise to avoid the division.
+  auto compare = [&](auto zero) {
+    using Number = decltype(zero);
+    const auto a = depths<Number>(*this, p, q, s), b = depths<Number>(*this, p, q, t);
+    const Number sumA = a.p - a.q, sumB = b.p - b.q;
+    return std::array<Number, 3>{a.p * sumB - b.p * sumA, sumA, sumB};
+  };
+  const auto rough = compare(Interval(0));
+  auto known = [](const Interval& i) { return i.inf() > 0 || i.sup() < 0; };
+  if (known(rough[0]) && known(rough[1]) && known(rough[2])) {
+    int sign = rough[0].inf() > 0 ? 1 : -1;
+    if (rough[1].sup() < 0) sign = -sign;
+    if (rough[2].sup() < 0) sign = -sign;
+    return sign;
+  }
+  const auto exact = compare(Rational(0));
+  auto signOf = [](const Rational& r) { return r > 0 ? 1 : r < 0 ? -1 : 0; };
+  return signOf(exact[0]) * (signOf(exact[1]) < 0 ? -1 : 1) * (signOf(exact[2]) < 0 ? -1 : 1);
+}
+
+Vec3 ExactPoints::crossing(Index p, Index q, const Triangle& t) const {
+  if (p > q) std::swap(p, q);
+  const Vec3 &a = (*this)[p], &b = (*this)[q];
+  const auto d = depths<double>(*this, p, q, t);
+  const double u = std::abs(d.p), v = std::abs(d.q), sum = u + v;
+  const double share = sum > 0 ? std::clamp(u / sum, 0.0, 1.0) : 0.5;
+  // From the nearer end, so that a crossing close to an end is placed with that end's precision.
+  Vec3 point = share <= 0.5 ? Vec3(a + share * (b - a)) : Vec3(b + (sum > 0 ? v / sum : 0.5) * (a - b));
+  point = point.cwiseMax(a.cwiseMin(b)).cwiseMin(a.cwiseMax(b));
+  const Vec3 &x = (*this)[t[0]], &y = (*this)[t[1]], &z = (*this)[t[2]];
+  for (Eigen::Index k = 0; k < 3; ++k)
+    if (x[k] == y[k] && y[k] == z[k]) point[k] = x[k];
+  return point;
+}
+
+}  // namespace sherd
