@@ -35,6 +35,7 @@ class Arranger {
     SHERD_CHECK(labelSurface());
     SHERD_CHECK(classifyCrack());
     SHERD_CHECK(pairSegments());
+    findEqualPositions();
     return std::move(a_);
   }
 
@@ -331,6 +332,26 @@ class Arranger {
     int slot = 0;
     while (slot < 2 && edges.ofTriangle[at(t)][static_cast<std::size_t>(slot)] != edge) ++slot;
     return edges.forward(triangles, t, slot);
+  }
+
+  /// Among the sheets' vertices, the crossings, and the corners of crossed surface triangles.
+  void findEqualPositions() {
+    std::vector<Index> involved;
+    for (Index v = a_.firstCrack; at(v) < a_.positions.size(); ++v) involved.push_back(v);
+    auto corners = [&](Index s) { involved.insert(involved.end(), a_.surface[at(s)].begin(), a_.surface[at(s)].end()); };
+    for (const Crossing& x : a_.surfaceCrossings.list)
+      for (const Index s : a_.surfaceEdges.trianglesOf(x.edge)) corners(s);
+    for (const Crossing& x : a_.crackCrossings.list) corners(x.triangle);
+    auto key = [&](Index v) {
+      const Vec3& p = a_.positions[at(v)];
+      return std::tuple(p.x(), p.y(), p.z(), v);
+    };
+    std::sort(involved.begin(), involved.end(), [&](Index i, Index j) { return key(i) < key(j); });
+    a_.same.resize(a_.positions.size());
+    std::iota(a_.same.begin(), a_.same.end(), Index{0});
+    for (std::size_t i = 1; i < involved.size(); ++i)
+      if (a_.positions[at(involved[i])] == a_.positions[at(involved[i - 1])])
+        a_.same[at(involved[i])] = a_.same[at(involved[i - 1])];
   }
 
   const TetMesh& tets_;

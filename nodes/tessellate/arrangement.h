@@ -45,6 +45,7 @@ struct Arrangement {
   std::vector<Triangle> crack;       ///< the sheets' triangles with their numbers shifted by firstCrack
   std::vector<Vec3> positions;
   Index firstCrack = 0, firstNew = 0;
+  std::vector<Index> same;           ///< per vertex: the least-numbered one that rounding put on the same spot
   EdgeTable surfaceEdges, crackEdges;   ///< crackEdges' ends are unshifted numbers of the complex
   EdgeCrossings surfaceCrossings, crackCrossings;
   std::vector<Segment> segments;          ///< by (surface, crack)

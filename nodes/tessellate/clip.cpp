@@ -19,7 +19,8 @@ struct HalfEdge {
 /// One triangle with the half-edges on its border and across it.
 class CutTriangle {
  public:
-  CutTriangle(std::span<const Vec3> positions, const Triangle& corners) : positions_(positions), corners_(corners) {
+  CutTriangle(const Arrangement& arrangement, const Triangle& corners)
+      : positions_(arrangement.positions), same_(arrangement.same) {
     const Vec3 &a = position(corners[0]), &b = position(corners[1]), &c = position(corners[2]);
     const Vec3 normal = (b - a).cross(c - a);
     normal.cwiseAbs().maxCoeff(&drop_);
@@ -44,11 +45,13 @@ class CutTriangle {
       while (last < halfEdges_.size() && halfEdges_[last].region == halfEdges_[first].region) ++last;
       loops.clear();
       traceLoops(std::span(halfEdges_).subspan(first, last - first), loops);
+      const Index regionHere = halfEdges_[first].region;
+      first = last;
+      if (loops.empty()) continue;
       const PolygonTriangulation result = triangulatePolygon(planar_, loops);
       forced += result.forced;
       for (const Triangle& t : result.triangles)
-        emit(Triangle{ids_[at(t[0])], ids_[at(t[1])], ids_[at(t[2])]}, halfEdges_[first].region);
-      first = last;
+        emit(Triangle{ids_[at(t[0])], ids_[at(t[1])], ids_[at(t[2])]}, regionHere);
     }
     return forced;
   }
@@ -56,9 +59,14 @@ class CutTriangle {
  private:
   const Vec3& position(Index v) const { return positions_[at(v)]; }
 
+  /// Vertices on one spot are one corner, which then lies on all their lines.
   void addVertex(Index vertex, std::uint32_t lines) {
+    vertex = same_[at(vertex)];
     const auto found = std::find(ids_.begin(), ids_.end(), vertex);
-    if (found != ids_.end()) return;
+    if (found != ids_.end()) {
+      planar_[static_cast<std::size_t>(found - ids_.begin())].lines |= lines;
+      return;
+    }
     const Vec3& p = position(vertex);
     const int x = (drop_ + 1) % 3, y = (drop_ + 2) % 3;
     ids_.push_back(vertex);
@@ -66,10 +74,11 @@ class CutTriangle {
   }
 
   Index local(Index vertex) const {
-    return static_cast<Index>(std::find(ids_.begin(), ids_.end(), vertex) - ids_.begin());
+    return static_cast<Index>(std::find(ids_.begin(), ids_.end(), same_[at(vertex)]) - ids_.begin());
   }
 
-  /// In one region a vertex begins at most one half-edge, since the cells around a crack edge all differ.
+  /// In one region a vertex begins at most one half-edge, since the cells around a crack edge all differ. Followed by
+  /// the vertices' own numbers; only then are those on one spot taken together.
   void traceLoops(std::span<const HalfEdge> region, std::vector<std::vector<Index>>& loops) const {
     std::vector<bool> used(region.size(), false);
     for (std::size_t first = 0; first < region.size(); ++first) {
@@ -78,17 +87,21 @@ class CutTriangle {
       std::size_t i = first;
       while (i < region.size() && !used[i]) {
         used[i] = true;
-        loops.back().push_back(local(region[i].from));
+        const Index corner = local(region[i].from);
+        if (loops.back().empty() || loops.back().back() != corner) loops.back().push_back(corner);
         const auto next = std::lower_bound(region.begin(), region.end(), region[i].to,
                                            [](const HalfEdge& h, Index v) { return h.from < v; });
         i = next != region.end() && next->from == region[i].to ? static_cast<std::size_t>(next - region.begin())
                                                                : region.size();
       }
+      auto& loop = loops.back();
+      while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
+      if (loop.size() < 3) loops.pop_back();  // nothing, or two edges that cancel
     }
   }
 
   std::span<const Vec3> positions_;
-  Triangle corners_;
+  std::span<const Index> same_;
   int drop_ = 0;
   bool flip_ = false;
   std::vector<Index> ids_;
@@ -179,7 +192,7 @@ class Clipper {
 
   void splitSurfaceTriangle(Index s, std::vector<SkinTriangle>& out, std::size_t& forced) const {
     const Triangle& corners = a_.surface[at(s)];
-    CutTriangle cut(a_.positions, corners);
+    CutTriangle cut(a_, corners);
     const std::array<Index, 3> labels{a_.surfaceLabel[at(corners[0])], a_.surfaceLabel[at(corners[1])],
                                       a_.surfaceLabel[at(corners[2])]};
     walkBorder(
@@ -216,7 +229,7 @@ class Clipper {
   void clipCrackTriangle(Index c, std::vector<SheetTriangle>& out, std::size_t& forced) const {
     const CrackTriangle& own = complex_.triangles[at(c)];
     const Triangle& corners = a_.crack[at(c)];
-    CutTriangle cut(a_.positions, corners);
+    CutTriangle cut(a_, corners);
     std::array<Index, 3> outside{};
     for (std::size_t i = 0; i < 3; ++i) outside[i] = a_.crackInside[at(own.corners[i])] ? 0 : 1;
     walkBorder(

@@ -14,10 +14,6 @@
 namespace sherd {
 namespace {
 
-bool lessByCoordinates(const Vec3& a, const Vec3& b) {
-  return std::tuple(a.x(), a.y(), a.z()) < std::tuple(b.x(), b.y(), b.z());
-}
-
 double triangleArea(std::span<const Vec3> positions, const Triangle& t) {
   const Vec3& a = positions[at(t[0])];
   return 0.5 * (positions[at(t[1])] - a).cross(positions[at(t[2])] - a).norm();
@@ -36,7 +32,6 @@ class Assembler {
       : a_(a), m_(m), minVolume_(minVolume), density_(density), positions_(a.positions) {}
 
   Fragments run() {
-    mergeEqualPositions();
     gatherFaces();
     splitIntoSolids();
     mergeSmallSolids();
@@ -45,28 +40,10 @@ class Assembler {
   }
 
  private:
-  /// New vertices that rounding placed on one spot become one: triangles that lose a corner vanish, on both sides of
-  /// a sheet alike, and what is left closes as before.
-  void mergeEqualPositions() {
-    std::vector<Index> involved;
-    auto involve = [&](const Triangle& t) { involved.insert(involved.end(), t.begin(), t.end()); };
-    for (const SkinTriangle& t : m_.skin)
-      if (t.cut) involve(t.corners);
-    for (const SheetTriangle& t : m_.sheet) involve(t.corners);
-    std::sort(involved.begin(), involved.end());
-    involved.erase(std::unique(involved.begin(), involved.end()), involved.end());
-    std::stable_sort(involved.begin(), involved.end(), [&](Index i, Index j) {
-      return lessByCoordinates(positions_[at(i)], positions_[at(j)]);
-    });
-    same_.resize(positions_.size());
-    for (std::size_t i = 0; i < same_.size(); ++i) same_[i] = static_cast<Index>(i);
-    for (std::size_t i = 1; i < involved.size(); ++i)
-      if (positions_[at(involved[i])] == positions_[at(involved[i - 1])])
-        same_[at(involved[i])] = same_[at(involved[i - 1])];
-  }
-
+  /// Vertices that rounding placed on one spot are one: triangles that lose a corner vanish, on both sides of a sheet
+  /// alike, and what is left closes as before.
   std::optional<Triangle> merged(const Triangle& t) const {
-    const Triangle r{same_[at(t[0])], same_[at(t[1])], same_[at(t[2])]};
+    const Triangle r{a_.same[at(t[0])], a_.same[at(t[1])], a_.same[at(t[2])]};
     if (r[0] == r[1] || r[1] == r[2] || r[2] == r[0]) return std::nullopt;
     return r;
   }
@@ -286,7 +263,6 @@ class Assembler {
   const ClippedMeshes& m_;
   double minVolume_, density_;
   std::span<const Vec3> positions_;
-  std::vector<Index> same_;  ///< per vertex: the least-numbered one at its place
   std::vector<Face> faces_;
   std::vector<Solid> solids_;
   std::vector<Index> solidOfFace_;

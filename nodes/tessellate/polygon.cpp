@@ -234,7 +234,6 @@ PolygonTriangulation triangulatePolygon(std::span<const PlanarCorner> corners, s
   }
   std::vector<Loop> outers, holes;
   for (const Loop& loop : loops) {
-    if (loop.size() < 3) continue;  // two edges that cancel
     (loops.size() == 1 || loopArea2(corners, loop) >= 0 ? outers : holes).push_back(loop);
   }
   if (outers.empty()) outers.swap(holes);  // all areas rounded away: the triangles are as flat as the region

@@ -22,7 +22,7 @@ struct PolygonTriangulation {
 };
 
 /// Triangulates the region with the given loops to the left of their edges: outer loops counter-clockwise, holes
-/// clockwise, each a cycle of corner numbers, not repeated within a loop. Uses no corner that is not in a loop and
+/// clockwise, each a cycle of at least three corner numbers, neighbours different. Corners have different points. Uses no corner that is not in a loop and
 /// adds none, and every loop edge is an edge of exactly one triangle, in the loop's direction, whatever the
 /// coordinates are. Ears are cut by exact predicates on the rounded points, best first, then edges are
 /// flipped to enlarge the least angle (a constrained Delaunay triangulation where rounding allows). Cost O(n²) for n corners.
