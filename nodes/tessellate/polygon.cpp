@@ -3,6 +3,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace sherd {
@@ -26,11 +27,13 @@ class Plane {
   bool inClosedTriangle(Index a, Index b, Index c, Index p) const {
     return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
   }
-  /// Area over the sum of squared sides: largest for an equilateral triangle, 0 for a flat one.
+  /// Sine of the least angle, negative where the triangle is turned over, 0 where it is flat.
   double quality(Index a, Index b, Index c) const {
     const Vec2 u = point(b) - point(a), v = point(c) - point(a), w = point(c) - point(b);
-    const double sides = u.squaredNorm() + v.squaredNorm() + w.squaredNorm();
-    return sides > 0 ? (u.x() * v.y() - u.y() * v.x()) / sides : 0;
+    const double area2 = u.x() * v.y() - u.y() * v.x();
+    double sides[] = {u.squaredNorm(), v.squaredNorm(), w.squaredNorm()};
+    std::sort(sides, sides + 3);
+    return sides[0] > 0 ? area2 / std::sqrt(sides[1] * sides[2]) : 0;
   }
   const Vec2& point(Index i) const { return corners_[at(i)].point; }
 
@@ -195,7 +198,7 @@ bool flipPass(const Plane& plane, std::vector<Triangle>& triangles, const std::s
 }
 
 void flipToBetterAngles(const Plane& plane, std::span<const Loop> loops, std::vector<Triangle>& triangles) {
-  if (triangles.size() < 3) return;
+  if (triangles.size() < 2) return;
   std::set<std::pair<Index, Index>> fixed;
   for (const Loop& loop : loops)
     for (std::size_t i = 0; i < loop.size(); ++i) fixed.insert(std::minmax(loop[i], loop[(i + 1) % loop.size()]));
