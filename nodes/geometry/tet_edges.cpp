@@ -4,10 +4,10 @@
 
 namespace sherd {
 
-std::vector<Edge> tetEdges(const TetMesh& mesh) {
+std::vector<Edge> tetEdges(std::span<const Tetra> tets) {
   std::vector<Edge> edges;
-  edges.reserve(6 * mesh.tets.size());
-  for (const Tetra& tet : mesh.tets)
+  edges.reserve(6 * tets.size());
+  for (const Tetra& tet : tets)
     for (const auto& corner : kTetraEdge) {
       const auto [low, high] = std::minmax(tet[at(corner[0])], tet[at(corner[1])]);
       edges.push_back({low, high});

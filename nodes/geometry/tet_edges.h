@@ -13,7 +13,7 @@ namespace sherd {
 using Edge = std::array<Index, 2>;
 
 /// Every edge once, ascending. Cost O(tets log tets).
-std::vector<Edge> tetEdges(const TetMesh& mesh);
+std::vector<Edge> tetEdges(std::span<const Tetra> tets);
 
 /// Neighbours of every node along edges, ascending, in one array.
 class NodeGraph {

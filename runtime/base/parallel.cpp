@@ -7,6 +7,7 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #ifndef SHERD_PARALLEL_STD
 #include <tbb/blocked_range.h>

@@ -119,11 +119,11 @@ struct NodeType {
 
 /// Options of a numeric parameter.
 struct NumberOptions {
-  std::string unit;
+  std::string unit = {};
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   bool openMin = false, openMax = false;
-  std::string help;
+  std::string help = {};
 };
 
 /// Binds a plain parameter struct P (whose member initialisers are the defaults) to a NodeType.

@@ -76,6 +76,8 @@ class Value {
   const ValueType& type() const { return *type_; }
   Digest digest() const { return type_->digest(data_.get()); }
   std::size_t bytes() const { return type_->bytes(data_.get()); }
+  /// Equal for values that share their data.
+  const void* address() const { return data_.get(); }
 
   /// The value as T, or null where it is something else or empty.
   template <class T>

@@ -1,0 +1,124 @@
+// Centroidal Voronoi diagram of the body in its embedding: Lloyd's method on the nodes of the cage.
+// Schvartzman and Otaduy (2014), section 2.2, Algorithm 2, equation (4).
+//
+//   E_D = Σ_n w_n ‖x̄_n − p̄_label(n)‖²     (J·m²)
+//
+// Deviations from the paper
+// - A site moves to Σ w x̄ / Σ w, the minimiser of E_D; equation (4) divides by the number of nodes. A cell
+// whose
+//   weights are all zero takes volumes V_n as weights; one without either, or without nodes, stays where it
+//   is.
+// - Labels are the nearest sites (`exact`); the paper's flooding (`flood`) is there to compare with. In
+// flooding,
+//   distances and queue start anew in every pass (the listing never resets them), and W in line 11, which
+//   cancels where two sites are compared at one node and breaks where W = 0, plays no part. It visits what
+//   the graph of the mesh connects to a site's nearest node; nodes that no flood reaches take their nearest
+//   site.
+// - The paper's 1e-7 is relative to the embedding's diameter; unchanged labels also end the iteration.
+// - A diagram of one cell has its site at the body's centroid by volume, wherever the energy is.
+// - Sites are added one at a time to converged ones, drawn with probability ∝ w ‖x̄ − p̄‖² (the paper: all at
+// once,
+//   ∝ w). E_D can then not rise with their number, which a search for a threshold relies on.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/exec.h"
+#include "base/result.h"
+#include "types/fields.h"
+#include "types/partition.h"
+
+namespace sherd {
+
+enum class Labels { Exact, Flood };
+
+/// When Lloyd's iteration ends: no label changed, no site moved farther than tolerance · Embedding::diameter,
+/// or after so many passes.
+struct LloydLimits {
+  double tolerance = 1e-7;
+  int maxIterations = 1000;
+};
+
+struct CvdParams {
+  int degree = 0;         ///< N ≥ 0; 0: as many as the sites given
+  std::int64_t seed = 1;  ///< of the draw of further sites
+  Labels labels = Labels::Exact;
+  double tolerance = LloydLimits{}.tolerance;
+  int maxIterations = LloydLimits{}.maxIterations;
+};
+
+/// `start`: d × N sites of the same embedding, or null. With `degree` 0 or N they are where the iteration
+/// starts; with a higher degree, more are grown from them; with a lower one, or null, all are grown from one.
+/// (Growing from one to N gives what PredictDegree's search gives at N for the same seed.) More sites than
+/// there are distinct nodes are not grown; a warning says so. Sites given may coincide, and cells may be
+/// empty. Says N, E_D, γ and how it ended. The result's sites are its cells' centroids (within the tolerance)
+/// and its labels exactly the nearest of these sites, the lower index where two are equally near (`exact`).
+/// Errors: sizes or dimensions that don't match; coordinates, weights or sites that are not finite; neither
+/// sites nor degree. Cost per pass O(nodes · N · d) at worst, far less where few sites move.
+Result<Partition> cvd(const std::shared_ptr<const Embedding>& embedding, const WeightField& weights,
+                      const Sites* start, const CvdParams& params, const Exec& exec);
+
+// What the search for the degree shares.
+
+/// Are these of one body, and finite?
+Result<void> checkLloydInput(const Embedding& embedding, const WeightField& weights);
+
+/// Σ V x̄ / Σ V, m; the mean of the nodes where all volumes are zero.
+Eigen::VectorXd bodyCentroid(const Embedding& embedding, const WeightField& weights);
+
+/// Sites, and every node's nearest of them, kept exact while sites are added and moved.
+///
+/// Same labels, sites and energies to the last bit as comparing all nodes with all sites in every pass: what
+/// is left out is proved not to matter. A node whose own site stayed is compared only with sites that moved;
+/// and per (node, site) a lower bound of the distance, lessened by how far the site has moved since (Elkan,
+/// ICML 2003; widened by 1e-10 for rounding), rules out most of the others. Bounds take 8 bytes · nodes · N;
+/// beyond 256 MB they are not kept, which costs time only.
+class Lloyd {
+ public:
+  /// Input that passes checkLloydInput; kept by reference.
+  Lloyd(const Embedding& embedding, const WeightField& weights);
+  ~Lloyd();
+  Lloyd(Lloyd&&) noexcept;
+
+  struct End {
+    int iterations = 0;
+    bool converged = false;
+  };
+
+  /// One site more; labels follow. `position`: d numbers, m.
+  void addSite(const Eigen::Ref<const Eigen::VectorXd>& position, const Exec& exec);
+  /// Lloyd's iteration from the sites as they are, with exact labels.
+  Result<End> run(const LloydLimits& limits, const Exec& exec);
+  /// The same with labels by flooding over the edges of the embedding's mesh. May end without converging.
+  Result<End> runFlood(const LloydLimits& limits, const Exec& exec);
+
+  std::size_t siteCount() const;
+  std::size_t nodeCount() const;
+  Eigen::MatrixXd sites() const;                        ///< d × N, m
+  const std::vector<Index>& labels() const;             ///< per node
+  const std::vector<double>& squaredDistances() const;  ///< m², per node, to its site
+  double energy() const;                                ///< J·m²: E_D
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+enum class Growth {
+  ByEnergy,  ///< only where a new site lowers E_D
+  ByVolume,  ///< also where there is no energy: then ∝ V ‖x̄ − p̄‖², and at last ∝ ‖x̄ − p̄‖²
+};
+
+/// Draws a node by `seed` and the number of sites so far. None where every node (that weighs) has a site of
+/// its own place, or where there are as many sites as nodes.
+std::optional<Index> drawSite(const Lloyd& lloyd, const WeightField& weights, Growth growth,
+                              std::int64_t seed);
+
+/// Adds a drawn site and runs Lloyd's iteration. False where none could be drawn: nothing has changed then.
+Result<bool> growSite(Lloyd& lloyd, const Embedding& embedding, const WeightField& weights, Growth growth,
+                      std::int64_t seed, const LloydLimits& limits, const Exec& exec);
+
+}  // namespace sherd

@@ -1,0 +1,64 @@
+#include "cvd/flood.h"
+
+#include <deque>
+#include <limits>
+
+#include "cvd/distance.h"
+
+namespace sherd {
+namespace {
+
+class Flood {
+ public:
+  Flood(const PaddedPoints& points, const NodeGraph& graph)
+      : points_(points),
+        graph_(graph),
+        label_(points.nodeCount, -1),
+        distance_(points.nodeCount, std::numeric_limits<double>::infinity()) {}
+
+  std::vector<Index> run() {
+    for (std::size_t j = 0; j < points_.siteCount; ++j) offer(nearestNode(j), static_cast<Index>(j));
+    while (!queue_.empty()) {
+      const Index n = queue_.front();
+      queue_.pop_front();
+      for (const Index neighbour : graph_.neighbours(n)) offer(neighbour, label_[at(n)]);
+    }
+    return std::move(label_);
+  }
+
+ private:
+  double distance(std::size_t n, std::size_t j) const {
+    return squaredDistance(points_.nodes + n * points_.size, points_.sites + j * points_.size, points_.size);
+  }
+
+  Index nearestNode(std::size_t j) const {
+    std::size_t nearest = 0;
+    double best = distance(0, j);
+    for (std::size_t n = 1; n < points_.nodeCount; ++n)
+      if (const double d = distance(n, j); d < best) best = d, nearest = n;
+    return static_cast<Index>(nearest);
+  }
+
+  void offer(Index n, Index site) {
+    if (label_[at(n)] == site) return;
+    const double d = distance(at(n), at(site));
+    if (d > distance_[at(n)] || (d == distance_[at(n)] && site > label_[at(n)])) return;
+    distance_[at(n)] = d;
+    label_[at(n)] = site;
+    queue_.push_back(n);
+  }
+
+  const PaddedPoints& points_;
+  const NodeGraph& graph_;
+  std::vector<Index> label_;
+  std::vector<double> distance_;
+  std::deque<Index> queue_;
+};
+
+}  // namespace
+
+std::vector<Index> floodLabels(const PaddedPoints& points, const NodeGraph& graph) {
+  return Flood(points, graph).run();
+}
+
+}  // namespace sherd

@@ -1,0 +1,22 @@
+// Labels by flooding the cells from the sites' nearest nodes (Schvartzman and Otaduy 2014, Algorithm 2, lines
+// 1–15).
+#pragma once
+
+#include <vector>
+
+#include "geometry/tet_edges.h"
+
+namespace sherd {
+
+/// Padded coordinates of nodes and sites, one after another (cvd/distance.h).
+struct PaddedPoints {
+  const double* nodes;
+  const double* sites;
+  std::size_t nodeCount, siteCount, size;
+};
+
+/// Per node its label, or −1 where no flood arrived. First in, first out, sites in order, neighbours
+/// ascending; a node takes another label only for a smaller distance, or an equal one and a lower site.
+std::vector<Index> floodLabels(const PaddedPoints& points, const NodeGraph& graph);
+
+}  // namespace sherd

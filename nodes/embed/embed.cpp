@@ -1,0 +1,207 @@
+#include "embed/embed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "embed/convexity.h"
+#include "embed/extension.h"
+#include "embed/filter.h"
+#include "embed/part.h"
+#include "embed/spectrum.h"
+#include "geometry/solid.h"
+#include "geometry/tet_edges.h"
+
+namespace sherd {
+namespace {
+
+constexpr double kConvex = 1e-6;  ///< of the hull's volume
+
+Result<void> check(const TetMesh* tets, const EmbedParams& params) {
+  if (tets == nullptr || tets->tets.empty()) return failure("the tetrahedral mesh is empty", {}, "tets");
+  for (const Vec3& p : tets->nodes)
+    if (!p.allFinite()) return failure("a node of the tetrahedral mesh is not at a finite place", {}, "tets");
+  if (params.dimensions < 1) return failure("no dimension is allowed", "allow at least one", "dimensions");
+  if (!(params.tolerance >= 0 && params.tolerance < 1))
+    return failure("the tolerance is not in [0, 1)", {}, "tolerance");
+  if (!(params.time > 0) || !std::isfinite(params.time))
+    return failure("the diffusion time is not positive", {}, "time");
+  return {};
+}
+
+Result<bool> isConvex(const TetMesh& tets) {
+  const TriMesh& surface = *tets.surface;
+  SHERD_ASSIGN(const double hull, convexHullVolume(surface.positions));
+  return hull - std::abs(solidVolume(surface.positions, surface.triangles)) <= kConvex * hull;
+}
+
+double boxDiagonal(const Eigen::MatrixXd& coordinates) {
+  return (coordinates.rowwise().maxCoeff() - coordinates.rowwise().minCoeff()).norm();
+}
+
+Embedding euclidean(const std::shared_ptr<const TetMesh>& tets) {
+  Embedding out{tets, Embedding::Metric::Euclidean, {}, 0};
+  const Vec3 centre = integrateSolid(tets->surface->positions, tets->surface->triangles).centroid;
+  out.coordinates.resize(3, static_cast<Eigen::Index>(tets->nodes.size()));
+  for (std::size_t n = 0; n < tets->nodes.size(); ++n)
+    out.coordinates.col(static_cast<Eigen::Index>(n)) = tets->nodes[n] - centre;
+  out.diameter = boxDiagonal(out.coordinates);
+  return out;
+}
+
+/// Mode functions of the part's border, carried inward (nodes × modes).
+Result<Eigen::MatrixXd> extended(const BodyPart& part, const Eigen::MatrixXd& onBorder,
+                                 EmbedParams::Extension extension, const Exec& exec) {
+  Eigen::MatrixXd values =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(part.node.size()), onBorder.cols());
+  std::vector<char> given(part.node.size(), 0);
+  for (std::size_t v = 0; v < part.borderNode.size(); ++v) {
+    values.row(part.borderNode[v]) = onBorder.row(static_cast<Eigen::Index>(v));
+    given[at(part.borderNode[v])] = 1;
+  }
+  if (extension == EmbedParams::Extension::Harmonic) {
+    SHERD_CHECK(extendHarmonically(part.positions, part.tets, given, values));
+    return values;
+  }
+  parallelFor(exec, part.node.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n)
+      if (!given[n])
+        values.row(static_cast<Eigen::Index>(n)) =
+            meanValueCoordinates(part.positions[n], part.borderPositions, part.borderTriangles).transpose() *
+            onBorder;
+  });
+  if (exec.cancelled()) return cancelledError();
+  if (!values.allFinite())
+    return failure("mean value coordinates are not defined at a node of the tetrahedral mesh",
+                   "use extension: harmonic", "extension");
+  return values;
+}
+
+/// Eigenvalues, and the modes at all nodes of the part.
+Result<Modes> modesOf(const BodyPart& part, const EmbedParams& params, const Exec& exec) {
+  if (params.source == EmbedParams::Source::Surface && part.shells == 1) {
+    SHERD_ASSIGN(Modes modes, lowestModes(surfaceLaplacian(part.borderPositions, part.borderTriangles),
+                                          params.dimensions, exec));
+    SHERD_ASSIGN(modes.functions, extended(part, modes.functions, params.extension, exec));
+    return modes;
+  }
+  if (params.source == EmbedParams::Source::Surface)
+    exec.info(
+        "a part of the body has a void, whose shell no surface connects with the outer one: modes of the "
+        "solid are taken for it");
+  return lowestModes(solidLaplacian(part.positions, part.tets), params.dimensions, exec);
+}
+
+/// The factor that brings embedded edges closest to true ones: argmin Σ (s |x̄_i − x̄_j| − |x_i − x_j|)².
+double edgeScale(const BodyPart& part, const Eigen::MatrixXd& x) {
+  double product = 0, square = 0;
+  for (const auto& [i, j] : tetEdges(part.tets)) {
+    const double embedded = (x.col(i) - x.col(j)).norm();
+    product += embedded * (part.positions[at(i)] - part.positions[at(j)]).norm();
+    square += embedded * embedded;
+  }
+  return square > 0 ? product / square : 1;
+}
+
+/// Leaves out the rows that hold less than `tolerance` of the largest row's magnitude.
+Eigen::MatrixXd significantRows(const Eigen::MatrixXd& x, double tolerance) {
+  const Eigen::VectorXd size = x.rowwise().norm();
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index k = 0; k < x.rows(); ++k)
+    if (size[k] > 0 && size[k] >= tolerance * size.maxCoeff()) kept.push_back(k);
+  return x(kept, Eigen::all);
+}
+
+/// Modes times factors, after the positions times theirs where these count, d × nodes.
+Result<Eigen::MatrixXd> filtered(const BodyPart& part, const EmbedParams& params, const Exec& exec) {
+  SHERD_ASSIGN(const Modes modes, modesOf(part, params, exec));
+  if (params.filter == EmbedParams::Filter::Diffusion) {
+    const Eigen::VectorXd factors = diffusionFilter(modes.eigenvalues, params.time);
+    const Eigen::MatrixXd x =
+        significantRows(factors.asDiagonal() * modes.functions.transpose(), params.tolerance);
+    return Eigen::MatrixXd(edgeScale(part, x) * x);
+  }
+  SHERD_ASSIGN(const FittedFilter factors, fittedFilter(part, modes.functions, exec));
+  Eigen::MatrixXd x(modes.functions.cols() + 3, modes.functions.rows());
+  for (std::size_t n = 0; n < part.positions.size(); ++n)
+    x.col(static_cast<Eigen::Index>(n)).head<3>() =
+        factors.positions * (part.positions[n] - part.positions[0]);
+  x.bottomRows(modes.functions.cols()) = factors.modes.asDiagonal() * modes.functions.transpose();
+  return significantRows(x, params.tolerance);
+}
+
+/// One part's coordinates about its mean by volume, d × nodes.
+Result<Eigen::MatrixXd> embedPart(const BodyPart& part, const EmbedParams& params, const Exec& exec) {
+  SHERD_ASSIGN(Eigen::MatrixXd x, filtered(part, params, exec));
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(x.rows());
+  double total = 0;
+  for (Eigen::Index n = 0; n < x.cols(); ++n) {
+    mean += part.volume[static_cast<std::size_t>(n)] * x.col(n);
+    total += part.volume[static_cast<std::size_t>(n)];
+  }
+  x.colwise() -= mean / total;
+  return x;
+}
+
+/// Parts on shared axes, apart along one more.
+Eigen::MatrixXd joined(const std::vector<BodyPart>& parts, const std::vector<Eigen::MatrixXd>& x,
+                       const TetMesh& tets) {
+  Eigen::Index dimensions = 0;
+  double apart = boxOf(tets.nodes).diagonal();
+  for (const Eigen::MatrixXd& part : x) {
+    dimensions = std::max(dimensions, part.rows());
+    apart = std::max(apart, boxDiagonal(part));
+  }
+  const Eigen::Index separate = parts.size() > 1 ? 1 : 0;
+  Eigen::MatrixXd all =
+      Eigen::MatrixXd::Zero(dimensions + separate, static_cast<Eigen::Index>(tets.nodes.size()));
+  for (std::size_t c = 0; c < parts.size(); ++c)
+    for (std::size_t n = 0; n < parts[c].node.size(); ++n) {
+      auto column = all.col(parts[c].node[n]);
+      column.head(x[c].rows()) = x[c].col(static_cast<Eigen::Index>(n));
+      if (separate) column[dimensions] = 2 * apart * static_cast<double>(c);
+    }
+  return all;
+}
+
+/// Root mean square of embedded over true edge length, less 1.
+double edgeError(const TetMesh& tets, const Eigen::MatrixXd& x) {
+  double sum = 0;
+  const std::vector<Edge> edges = tetEdges(tets.tets);
+  for (const auto& [i, j] : edges) {
+    const double error = (x.col(i) - x.col(j)).norm() / (tets.nodes[at(i)] - tets.nodes[at(j)]).norm() - 1;
+    sum += error * error;
+  }
+  return std::sqrt(sum / static_cast<double>(edges.size()));
+}
+
+}  // namespace
+
+Result<Embedding> embed(const std::shared_ptr<const TetMesh>& tets, const EmbedParams& params,
+                        const Exec& exec) {
+  SHERD_CHECK(check(tets.get(), params));
+  if (params.metric == EmbedParams::Metric::Euclidean) return euclidean(tets);
+  if (params.metric == EmbedParams::Metric::Auto) {
+    SHERD_ASSIGN(const bool convex, isConvex(*tets));
+    if (convex) {
+      exec.info("convex: straight distances, no embedding is computed");
+      return euclidean(tets);
+    }
+  }
+  const std::vector<BodyPart> parts = bodyParts(*tets);
+  std::vector<Eigen::MatrixXd> x;
+  for (const BodyPart& part : parts) {
+    SHERD_ASSIGN(Eigen::MatrixXd coordinates, embedPart(part, params, exec));
+    x.push_back(std::move(coordinates));
+    exec.progress(static_cast<double>(x.size()) / static_cast<double>(parts.size()));
+  }
+  Embedding out{tets, Embedding::Metric::Interior, joined(parts, x, *tets), 0};
+  out.diameter = boxDiagonal(out.coordinates);
+  exec.info(fmt::format("interior distances in {} dimensions; edge lengths met within {:.0f} %",
+                        out.coordinates.rows(), 100 * edgeError(*tets, out.coordinates)));
+  return out;
+}
+
+}  // namespace sherd

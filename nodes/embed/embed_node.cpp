@@ -1,0 +1,52 @@
+#include "embed/embed.h"
+#include "graph/node_type.h"
+
+namespace sherd {
+
+NodeType embedNode() {
+  using P = EmbedParams;
+  return NodeBuilder<P>("Embed", 1,
+                        "Gives every node coordinates in which distances are those inside the body.")
+      .input<TetMesh>("tets", "the body, from Tetrahedralize")
+      .choice(
+          "metric", &P::metric,
+          {{"auto", P::Metric::Auto}, {"euclidean", P::Metric::Euclidean}, {"interior", P::Metric::Interior}},
+          "auto: straight distances in a convex body, otherwise those inside; euclidean: straight ones, "
+          "cells "
+          "may reach across gaps; interior: always those inside")
+      .choice("source", &P::source, {{"solid", P::Source::Solid}, {"surface", P::Source::Surface}},
+              "what the eigenmodes are taken of. solid: the tetrahedra, right for thin walls; surface: their "
+              "boundary, as in Rustamov et al. 2009")
+      .choice("filter", &P::filter, {{"fitted", P::Filter::Fitted}, {"diffusion", P::Filter::Diffusion}},
+              "how modes are weighed. fitted: so that distances match paths inside; diffusion: by exp(−λ t), "
+              "as in "
+              "Rustamov et al. 2009")
+      .choice("extension", &P::extension,
+              {{"harmonic", P::Extension::Harmonic}, {"mvc", P::Extension::MeanValue}},
+              "how surface modes are carried inward, where source is surface. mvc: mean value coordinates")
+      .integer("dimensions", &P::dimensions,
+               {.unit = "", .min = 1, .max = 1000, .help = "eigenmodes computed, at most"})
+      .number("tolerance", &P::tolerance,
+              {.unit = "",
+               .min = 0,
+               .max = 1,
+               .openMax = true,
+               .help = "modes that matter less, relative to the one that matters most, are left out"})
+      .number(
+          "time", &P::time,
+          {.unit = "",
+           .min = 0,
+           .max = 100,
+           .openMin = true,
+           .help =
+               "diffusion time in units of 1/λ_1, where filter is diffusion: short keeps local detail, long "
+               "keeps the overall shape"})
+      .output<Embedding>("embedding", "coordinates per node")
+      .run([](const P& params, NodeIo& io) -> Result<void> {
+        SHERD_ASSIGN(Embedding embedding, embed(io.in<TetMesh>("tets"), params, io.exec()));
+        io.out("embedding", std::move(embedding));
+        return {};
+      });
+}
+
+}  // namespace sherd

@@ -1,0 +1,145 @@
+#include "export/export_crack_surface.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <optional>
+
+#include "base/atomic_file.h"
+#include "base/parallel.h"
+#include "export/owned_files.h"
+#include "export/piece_files.h"
+#include "export/pieces_json.h"
+
+namespace sherd {
+namespace {
+
+using Params = ExportCrackSurfaceParams;
+
+std::string bytesOf(const Fragments& f, const Piece& piece, bool crack, const Params& params) {
+  if (params.format == Params::Format::Obj)
+    return crack ? crackObj(f, piece, params.crackNormals) : surfaceObj(f, piece);
+  return crack ? crackPly(f, piece, params.crackNormals) : surfacePly(f, piece);
+}
+
+Result<void> checkInput(const Fragments& f) {
+  if (!f.tets || !f.tets->surface || f.pieces.empty())
+    return failure("there are no pieces to export", "wire Tessellate's `pieces`", "pieces");
+  for (const Piece& piece : f.pieces)
+    if (!OwnedFiles::canBeOurs(piece.name + "_surface.obj"))
+      return failure("'" + piece.name + "' cannot be a piece's name", "it has to be like piece_0001",
+                     "pieces");
+  return {};
+}
+
+/// One file to be written: a piece's surface or crack.
+struct Job {
+  std::size_t piece;
+  bool crack;
+};
+
+/// What writing one file gave.
+struct Outcome {
+  std::optional<Error> error;
+  Digest digest;
+  bool written = false;
+};
+
+Outcome put(const std::string& path, const std::string& bytes) {
+  Outcome outcome;
+  outcome.digest = Hasher().add(bytes).digest();
+  const auto change = writeFileAtomically(path, bytes);
+  if (change.ok())
+    outcome.written = *change == FileChange::Written;
+  else
+    outcome.error = change.error();
+  return outcome;
+}
+
+/// Writes all of the pieces' files, in parallel; stops early on cancel.
+std::vector<Outcome> writePieces(const Fragments& f, const Params& params, const std::vector<Job>& jobs,
+                                 const std::vector<std::string>& names, const OwnedFiles& files,
+                                 const Exec& exec) {
+  std::vector<Outcome> outcomes(jobs.size());
+  std::atomic<std::size_t> done{0};
+  parallelFor(exec, jobs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      outcomes[i] = put(files.path(names[i]), bytesOf(f, f.pieces[jobs[i].piece], jobs[i].crack, params));
+      exec.progress(static_cast<double>(++done) / static_cast<double>(jobs.size()));
+    }
+  });
+  return outcomes;
+}
+
+void warnOfLosses(const TriMesh& source, const Params& params, const Exec& exec) {
+  if (params.format != Params::Format::Obj) return;
+  const std::size_t uvs = source.uvSets.size() > 1 ? source.uvSets.size() - 1 : 0;
+  if (uvs + source.colorSets.size() == 0) return;
+  exec.warn(fmt::format(
+      "OBJ holds the first UV set only: {} more UV set{} and {} colour set{} are left out; "
+      "format ply keeps them",
+      uvs, uvs == 1 ? "" : "s", source.colorSets.size(), source.colorSets.size() == 1 ? "" : "s"));
+}
+
+/// E_D and γ in words.
+std::string verdict(const Fragments& f) {
+  if (f.gamma == 0) return fmt::format("E_D = {:.4g} J·m², degree given", f.energy);
+  return fmt::format("E_D = {:.4g} J·m² is {} γ = {:.4g} J·m²", f.energy,
+                     f.energy < f.gamma ? "below" : "not below", f.gamma);
+}
+
+void sayOutcome(const Fragments& f, const std::string& directory, const ExportReport& report,
+                const Exec& exec) {
+  if (f.sites == 1 && f.pieces.size() == 1)
+    exec.info(
+        fmt::format("nothing broke: {}; one whole piece, without crack faces, in {}", verdict(f), directory));
+  else
+    exec.info(fmt::format("{} piece{} from {} sites ({}) in {}", f.pieces.size(),
+                          f.pieces.size() == 1 ? "" : "s", f.sites, verdict(f), directory));
+  if (report.removed > 0)
+    exec.info(
+        fmt::format("removed {} file{} of an earlier run", report.removed, report.removed == 1 ? "" : "s"));
+}
+
+}  // namespace
+
+Result<ExportReport> exportCrackSurface(const Fragments& f, const Params& params, const Exec& exec) {
+  SHERD_CHECK(checkInput(f));
+  const char* extension = params.format == Params::Format::Obj ? ".obj" : ".ply";
+  std::vector<Job> jobs;
+  std::vector<std::string> names;
+  std::vector<PieceFileNames> pieceFiles(f.pieces.size());
+  for (std::size_t p = 0; p < f.pieces.size(); ++p) {
+    jobs.push_back({p, false});
+    names.push_back(pieceFiles[p].surface = f.pieces[p].name + "_surface" + extension);
+    if (f.pieces[p].crack.empty()) continue;
+    jobs.push_back({p, true});
+    names.push_back(pieceFiles[p].crack = f.pieces[p].name + "_crack" + extension);
+  }
+  names.push_back("pieces.json");
+
+  SHERD_CHECK(makeDirectory(params.directory));
+  SHERD_ASSIGN(const OwnedFiles files, OwnedFiles::open(params.directory, names));
+  warnOfLosses(*f.tets->surface, params, exec);
+  if (exec.cancelled()) return cancelledError();
+  SHERD_CHECK(files.claim());
+  std::vector<Outcome> outcomes = writePieces(f, params, jobs, names, files, exec);
+  if (exec.cancelled()) return cancelledError();
+  outcomes.push_back(put(files.path("pieces.json"), piecesJson(f, pieceFiles)));
+
+  ExportReport report;
+  std::vector<Digest> digests;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    if (outcomes[i].error) return *outcomes[i].error;
+    digests.push_back(outcomes[i].digest);
+    report.files.push_back(files.path(names[i]));
+    ++(outcomes[i].written ? report.written : report.kept);
+  }
+  SHERD_ASSIGN(report.removed, files.commit(digests));
+  report.files.push_back(files.path(OwnedFiles::manifestName));
+  report.description = files.path("pieces.json");
+  sayOutcome(f, params.directory, report, exec);
+  return report;
+}
+
+}  // namespace sherd

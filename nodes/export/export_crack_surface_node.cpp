@@ -1,0 +1,30 @@
+#include "export/export_crack_surface.h"
+#include "graph/node_type.h"
+
+namespace sherd {
+
+NodeType exportCrackSurfaceNode() {
+  using Params = ExportCrackSurfaceParams;
+  return NodeBuilder<Params>(
+             "ExportCrackSurface", 1,
+             "Writes every piece as two files, its outer skin and its crack faces, and pieces.json "
+             "with masses, volumes, inertia and neighbours. Files of an earlier run are replaced or "
+             "removed; nothing else in the directory is touched.")
+      .input<Fragments>("pieces", "the pieces to write")
+      .outputDirectory("directory", &Params::directory, "where the files go; created where it is missing")
+      .choice("format", &Params::format, {{"obj", Params::Format::Obj}, {"ply", Params::Format::Ply}},
+              "obj (text; first UV set) or ply (binary, double; all UV sets and colours)")
+      .choice("crack_normals", &Params::crackNormals,
+              {{"flat", Params::CrackNormals::Flat}, {"smooth", Params::CrackNormals::Smooth}},
+              "normals of the crack faces: one per triangle, or averaged over each face between two pieces")
+      .output<std::string>("manifest", "path of pieces.json")
+      .writesFiles()
+      .run([](const Params& params, NodeIo& io) -> Result<void> {
+        SHERD_ASSIGN(ExportReport report, exportCrackSurface(*io.in<Fragments>("pieces"), params, io.exec()));
+        for (std::string& file : report.files) io.wrote(std::move(file));
+        io.out("manifest", std::move(report.description));
+        return {};
+      });
+}
+
+}  // namespace sherd

@@ -1,0 +1,37 @@
+#include "graph/node_type.h"
+#include "predict_degree/predict_degree.h"
+
+namespace sherd {
+
+NodeType predictDegreeNode() {
+  return NodeBuilder<PredictDegreeParams>(
+             "PredictDegree", 1, "Decides from the energy into how many pieces the body breaks, and where.")
+      .input<WeightField>("weights", "what each node weighs, from Weights")
+      .input<Embedding>("embedding", "the distances to measure with, from Embed")
+      .number(
+          "gamma", &PredictDegreeParams::gamma,
+          {.unit = "J·m²",
+           .min = 0,
+           .help =
+               "threshold γ: sites are added until E_D falls below it. Higher: tougher, fewer pieces; E_D "
+               "falls about as N^(-2/3), so a tenth of γ gives some thirty times as many"})
+      .integer("degree", &PredictDegreeParams::degree,
+               {.unit = "", .min = 0, .max = 1e6, .help = "number of sites whatever γ; 0: from the energy"})
+      .integer("seed", &PredictDegreeParams::seed, {.unit = "", .help = "another seed gives other sites"})
+      .integer(
+          "max_degree", &PredictDegreeParams::maxDegree,
+          {.unit = "", .min = 1, .max = 1e6, .help = "the search by γ ends at so many sites, with a warning"})
+      .output<std::int64_t>("degree", "number of sites N; 1: it does not break")
+      .output<Sites>("sites", "the sites, with E_D and γ")
+      .output<double>("energy", "E_D of these sites, J·m²")
+      .run([](const PredictDegreeParams& params, NodeIo& io) -> Result<void> {
+        SHERD_ASSIGN(Sites sites, predictDegree(*io.in<WeightField>("weights"),
+                                                *io.in<Embedding>("embedding"), params, io.exec()));
+        io.out("degree", static_cast<std::int64_t>(sites.positions.cols()));
+        io.out("energy", sites.energy);
+        io.out("sites", std::move(sites));
+        return {};
+      });
+}
+
+}  // namespace sherd

@@ -1,0 +1,39 @@
+#include "graph/node_type.h"
+#include "preview/preview.h"
+
+namespace sherd {
+
+NodeType previewNode() {
+  using Params = PreviewParams;
+  return NodeBuilder<Params>(
+             "Preview", 1,
+             "Draws one PNG: the object before, its pieces moved apart with one colour each and pale "
+             "crack faces, and, with `energy` wired, the strain energy on the surface.")
+      .input<Fragments>("pieces", "the pieces to show")
+      .optionalInput<EnergyField>("energy", "strain energy, shown in a panel of its own")
+      .outputFile("file", &Params::file, "the PNG to write")
+      .integer("width", &Params::width,
+               {.unit = "pixels", .min = 64, .max = 16384, .help = "width of the picture"})
+      .integer("height", &Params::height,
+               {.unit = "pixels", .min = 64, .max = 16384, .help = "height of the picture"})
+      .integer("samples", &Params::samples,
+               {.unit = {}, .min = 1, .max = 1024, .help = "rays per pixel; more is smoother and slower"})
+      .number(
+          "explode", &Params::explode,
+          {.unit = {},
+           .min = 0,
+           .max = 4,
+           .help = "how far apart: each piece moves by this share of its distance from the body's centre"})
+      .output<std::string>("file", "path of the PNG")
+      .writesFiles()
+      .run([](const Params& params, NodeIo& io) -> Result<void> {
+        SHERD_ASSIGN(const Image image, renderPreview(*io.in<Fragments>("pieces"),
+                                                      io.in<EnergyField>("energy").get(), params, io.exec()));
+        SHERD_CHECK(writePng(image, params.file));
+        io.wrote(params.file);
+        io.out("file", params.file);
+        return {};
+      });
+}
+
+}  // namespace sherd

@@ -1,0 +1,55 @@
+// One linear tetrahedron of an isotropic material with E = 1.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "types/vec.h"
+
+namespace sherd {
+
+struct Lame {
+  double lambda, mu;
+  /// For E = 1.
+  explicit Lame(double poisson)
+      : lambda(poisson / ((1 + poisson) * (1 - 2 * poisson))), mu(1 / (2 * (1 + poisson))) {}
+};
+
+struct Element {
+  double volume = 0;
+  std::array<Vec3, 4> gradient;  ///< of the shape functions
+
+  Element(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const Vec3 ab = b - a, ac = c - a, ad = d - a;
+    const double det = ab.dot(ac.cross(ad));
+    volume = det / 6;
+    gradient = {Vec3::Zero(), ac.cross(ad) / det, ad.cross(ab) / det, ab.cross(ac) / det};
+    gradient[0] = -(gradient[1] + gradient[2] + gradient[3]);
+  }
+  Element(std::span<const Vec3> nodes, const Tetra& t)
+      : Element(nodes[at(t[0])], nodes[at(t[1])], nodes[at(t[2])], nodes[at(t[3])]) {}
+
+  /// Stiffness per volume between nodes i (row) and j: λ g_i g_jᵀ + μ g_j g_iᵀ + μ (g_i·g_j) I.
+  Mat3 stiffness(std::size_t i, std::size_t j, const Lame& lame) const {
+    const Vec3 &gi = gradient[i], &gj = gradient[j];
+    return lame.lambda * gi * gj.transpose() + lame.mu * gj * gi.transpose() +
+           lame.mu * gi.dot(gj) * Mat3::Identity();
+  }
+  Mat3 strain(std::span<const Vec3> u, const Tetra& t) const {
+    // Differences to one node: a large common translation costs no digits.
+    Mat3 f = Mat3::Zero();
+    for (std::size_t i = 1; i < 4; ++i) f += (u[at(t[i])] - u[at(t[0])]) * gradient[i].transpose();
+    return 0.5 * (f + f.transpose());
+  }
+  static Mat3 stress(const Mat3& strain, const Lame& lame) {
+    return lame.lambda * strain.trace() * Mat3::Identity() + 2 * lame.mu * strain;
+  }
+  /// W(ε), as a sum of squares: bulk and deviatoric.
+  static double energyDensity(const Mat3& strain, const Lame& lame) {
+    const double trace = strain.trace();
+    const Mat3 deviator = strain - trace / 3 * Mat3::Identity();
+    return 0.5 * (lame.lambda + 2 * lame.mu / 3) * trace * trace + lame.mu * deviator.squaredNorm();
+  }
+};
+
+}  // namespace sherd

@@ -1,0 +1,32 @@
+// Where a surface faces another part of itself across empty space, how far, and how long the way round is.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/exec.h"
+#include "types/vec.h"
+
+namespace sherd {
+
+/// One look across a gap, from a point of the surface along its outward normal to the next surface.
+struct Gap {
+  Vec3 from, to;
+  double width;   ///< |to − from|
+  double detour;  ///< length of the way along the surface; infinite between shells and beyond `farthest`
+  Vec3 middle() const { return 0.5 * (from + to); }
+};
+
+struct GapSearch {
+  double spacing;   ///< of the points looked from, and size of the patches in which ways are measured
+  double widest;    ///< wider gaps are left out
+  double farthest;  ///< ways longer than this count as infinite
+};
+
+/// All gaps seen. Only surfaces that face each other count (the angle of their normals exceeds 120°): a
+/// concave corner has no gap to keep open. Positions and lengths in one unit. Cost O(points looked from · log
+/// triangles).
+std::vector<Gap> findGaps(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                          const GapSearch& search, const Exec& exec);
+
+}  // namespace sherd

@@ -1,0 +1,34 @@
+// Signed distance of a closed surface on a narrow band of voxels (OpenVDB, hidden here).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "types/vec.h"
+
+namespace sherd {
+
+/// Distances come from openvdb::tools::meshToVolume, without sign. The sign is the winding number along
+/// columns of voxels, so that voids, components and nested shells get theirs without flood filling, for any
+/// thread count.
+class LevelSet {
+ public:
+  /// Positions and sizes in one unit of length. `band`: how far from the surface distances are kept.
+  LevelSet(std::span<const Vec3> positions, std::span<const Triangle> triangles, double voxel, double band);
+  ~LevelSet();
+  LevelSet(LevelSet&&) noexcept;
+
+  double voxel() const { return voxel_; }
+  double band() const { return band_; }
+  /// A function x → distance (trilinear, negative inside), ±band beyond the band. Each has a cache of its
+  /// own: one per thread; must not outlive the LevelSet.
+  std::function<double(const Vec3&)> sampler() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+  double voxel_, band_;
+};
+
+}  // namespace sherd

@@ -1,0 +1,371 @@
+#include "tetrahedralize/tetrahedralize.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "geometry/solid.h"
+#include "tetrahedralize/cage_field.h"
+#include "tetrahedralize/enclosure.h"
+#include "tetrahedralize/inside_share.h"
+
+namespace sherd {
+namespace {
+
+constexpr double kTetShape = 0.095;  ///< volume of a typical tetrahedron in cubes of the edge length aimed at
+constexpr double kCountTolerance = 0.1;  ///< of the number of tetrahedra, that the search ends at
+constexpr int kSearchRuns = 4;           ///< runs of Mesh_3 for the number of tetrahedra
+constexpr int kTries = 5;                ///< further ones for enclosure, topology and gaps
+constexpr double kPerturbBound = 12, kExudeBound = 14;  ///< degrees
+constexpr std::size_t kMostTets = 20;          ///< times the number aimed at, that gaps may ask for …
+constexpr std::size_t kAlwaysAllowed = 40000;  ///< … or this many
+
+UnitSurface toUnit(const TriMesh& mesh) {
+  UnitSurface unit;
+  const Box box = boxOf(mesh.positions);
+  unit.centre = box.centre();
+  unit.size = box.diagonal();
+  constexpr double kGrid = 1 << 24;
+  for (const Vec3& p : mesh.positions)
+    unit.positions.push_back(((p - unit.centre) / unit.size * kGrid).array().round().matrix() / kGrid);
+  unit.triangles = mesh.triangles;
+  unit.volume = solidVolume(unit.positions, unit.triangles);
+  unit.area = 0;
+  for (const Triangle& t : unit.triangles) {
+    const Vec3& a = unit.positions[at(t[0])];
+    unit.area += 0.5 * (unit.positions[at(t[1])] - a).cross(unit.positions[at(t[2])] - a).norm();
+  }
+  return unit;
+}
+
+Result<UnitSurface> checkedUnitSurface(const TriMesh& mesh) {
+  if (mesh.triangles.empty()) return failure("the surface has no triangles", "give a closed surface", "mesh");
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+    if (!mesh.positions[v].allFinite())
+      return failure(fmt::format("vertex {} is not a finite number", v + 1), "repair the file", "mesh");
+  SHERD_ASSIGN(std::vector<Shell> shells, splitShells(mesh.positions, mesh.triangles));
+  const double volume = solidVolume(mesh.positions, mesh.triangles);
+  const double size = boxOf(mesh.positions).diagonal();
+  if (std::abs(volume) <= 1e-12 * size * size * size)
+    return failure("the surface encloses no volume", "give a solid with some thickness", "mesh");
+  if (volume < 0)
+    return failure("the surface is inside out: its volume is negative", "turn its triangles around", "mesh");
+  UnitSurface unit = toUnit(mesh);
+  for (Shell& shell : shells) shell.volume /= size * size * size;
+  unit.shells = std::move(shells);
+  return unit;
+}
+
+/// The edge length with which `tets` fill the volume of the cage.
+double edgeForCount(const UnitSurface& surface, double tets) {
+  double h = std::cbrt(surface.volume / (kTetShape * tets));
+  for (int i = 0; i < 50; ++i)
+    h = std::cbrt((surface.volume + surface.area * kOffsetShare * h) / (kTetShape * tets));
+  return h;
+}
+
+double meanEdge(const Tetrahedra& mesh) {
+  std::set<std::pair<Index, Index>> edges;
+  double sum = 0;
+  for (const Tetra& t : mesh.tets)
+    for (const auto& e : kTetraEdge) {
+      const auto [a, b] = std::minmax(t[static_cast<std::size_t>(e[0])], t[static_cast<std::size_t>(e[1])]);
+      if (edges.emplace(a, b).second) sum += (mesh.nodes[at(a)] - mesh.nodes[at(b)]).norm();
+    }
+  return sum / static_cast<double>(edges.size());
+}
+
+/// Position along a Morton curve through the unit box.
+std::uint64_t mortonCode(const Vec3& p) {
+  std::uint64_t code = 0;
+  Eigen::Array<std::uint64_t, 3, 1> cell;
+  for (Eigen::Index i = 0; i < 3; ++i)
+    cell[i] = static_cast<std::uint64_t>(std::clamp((p[i] + 1.0) * 0.5, 0.0, 1.0) * ((1 << 20) - 1));
+  for (unsigned bit = 20; bit-- > 0;)
+    for (Eigen::Index i = 0; i < 3; ++i) code = code << 1 | (cell[i] >> bit & 1);
+  return code;
+}
+
+template <class Code>
+std::vector<Index> orderBy(std::size_t n, Code&& code) {
+  std::vector<std::pair<std::uint64_t, Index>> keys(n);
+  for (std::size_t i = 0; i < n; ++i) keys[i] = {code(i), static_cast<Index>(i)};
+  std::sort(keys.begin(), keys.end());
+  std::vector<Index> order(n);
+  for (std::size_t i = 0; i < n; ++i) order[i] = keys[i].second;
+  return order;
+}
+
+/// The mesh in metres, nodes and tetrahedra along a Morton curve.
+TetMesh toMetres(const Tetrahedra& mesh, const UnitSurface& surface) {
+  TetMesh out;
+  const std::vector<Index> nodeOrder =
+      orderBy(mesh.nodes.size(), [&](std::size_t n) { return mortonCode(mesh.nodes[n]); });
+  std::vector<Index> newNumber(mesh.nodes.size());
+  for (std::size_t n = 0; n < nodeOrder.size(); ++n) {
+    newNumber[at(nodeOrder[n])] = static_cast<Index>(n);
+    out.nodes.push_back(surface.toMetres(mesh.nodes[at(nodeOrder[n])]));
+  }
+  const std::vector<Index> tetOrder = orderBy(mesh.tets.size(), [&](std::size_t t) {
+    Vec3 sum = Vec3::Zero();
+    for (const Index n : mesh.tets[t]) sum += mesh.nodes[at(n)];
+    return mortonCode(0.25 * sum);
+  });
+  for (const Index t : tetOrder) {
+    Tetra tet = mesh.tets[at(t)];
+    for (Index& n : tet) n = newNumber[at(n)];
+    out.tets.push_back(tet);
+  }
+  connectTets(out);
+  return out;
+}
+
+class CageBuilder {
+ public:
+  CageBuilder(std::shared_ptr<const TriMesh> mesh, UnitSurface surface, const TetrahedralizeParams& params,
+              const Exec& exec)
+      : mesh_(std::move(mesh)),
+        surface_(std::move(surface)),
+        params_(params),
+        exec_(exec),
+        tree_(surface_.positions, surface_.triangles),
+        wanted_(topologyOf(surface_.shells)) {}
+
+  Result<TetMesh> build() {
+    nominal_ =
+        params_.edgeLength > 0 ? params_.edgeLength / surface_.size : edgeForCount(surface_, params_.tets);
+    nominal_ = std::min(nominal_, 0.25);  // at least a few edges across the object
+    exec_.progress(0.02);
+    SHERD_CHECK(lookForGaps());
+    SHERD_ASSIGN(VolumeMesh mesh, searchEdgeLength());
+    const auto hasTopology = [this](const Tetrahedra& tetrahedra) {
+      const TetMesh cage = toMetres(tetrahedra, surface_);
+      const auto shells = splitShells(cage.nodes, cage.boundary);
+      return shells.ok() && topologyOf(*shells) == wanted_;
+    };
+    for (int tries = 0; tries < kTries; ++tries) {
+      exec_.progress(0.6 + 0.06 * tries);
+      SHERD_CHECK(mesh.removeSlivers(kPerturbBound, kExudeBound, hasTopology));
+      TetMesh cage = toMetres(mesh.extract(), surface_);
+      SHERD_ASSIGN(bool good, verify(cage));
+      if (exec_.cancelled()) return cancelledError();
+      if (good) return finish(std::move(cage));
+      exec_.info("meshing again, more finely: " + problem_->what);
+      SHERD_ASSIGN(mesh, meshOnce());
+    }
+    return *problem_;
+  }
+
+ private:
+  Result<void> lookForGaps() {
+    const double widest = kOffsetShare * nominal_ * kLargestEdge * 4;
+    gaps_ = findGaps(surface_.positions, surface_.triangles,
+                     {.spacing = nominal_ / 3, .widest = widest, .farthest = 2 * nominal_}, exec_);
+    sizes_.edgeLength = nominal_;
+    chooseGaps();
+    if (exec_.cancelled()) return cancelledError();
+    return {};
+  }
+
+  /// Gaps to be kept open: those with a way round of more than an edge, or shorter ones when topology asked
+  /// for it; but none whose way round is hardly longer than the way across, as at the bottom of a groove.
+  void chooseGaps() {
+    sizes_.open.clear();
+    for (const Gap& gap : gaps_)
+      if (gap.detour > std::max((smallGapsToo_ ? 0.3 : 1.0) * nominal_, 1.3 * gap.width))
+        sizes_.open.push_back(gap);
+  }
+
+  std::string gapText(const Gap& gap) const {
+    return fmt::format("the gap of {:.3g} m at {} m", gap.width * surface_.size,
+                       placeText(surface_.toMetres(gap.middle())));
+  }
+
+  Result<VolumeMesh> meshOnce() {
+    field_ = std::make_unique<CageField>(surface_, tree_, sizes_, levelSet_);
+    if (exec_.cancelled()) return cancelledError();
+    const std::size_t most = std::max(kAlwaysAllowed, kMostTets * static_cast<std::size_t>(aimedTets()));
+    if (const double expected = field_->expectedTets(); expected > static_cast<double>(most))
+      return tooMany(expected);
+    return VolumeMesh::refine(field_->volume(), exec_);
+  }
+
+  double aimedTets() const {
+    if (params_.edgeLength <= 0) return params_.tets;
+    return (surface_.volume + surface_.area * kOffsetShare * nominal_) / (kTetShape * std::pow(nominal_, 3));
+  }
+
+  Error tooMany(double expected) const {
+    const auto narrowest = std::min_element(sizes_.open.begin(), sizes_.open.end(),
+                                            [](const Gap& a, const Gap& b) { return a.width < b.width; });
+    if (narrowest == sizes_.open.end())
+      return failure(fmt::format("about {:.0f} tetrahedra would be needed", expected),
+                     "ask for a longer edge or more tetrahedra", "mesh");
+    return failure(fmt::format("{} cannot be kept open: that would take about {:.0f} tetrahedra",
+                               gapText(*narrowest), expected),
+                   "close or widen the gap in the model, or ask for more tetrahedra", "mesh");
+  }
+
+  /// Runs Mesh_3 until number of tetrahedra or mean edge length is as asked for, by the secant rule on
+  /// logarithms.
+  Result<VolumeMesh> searchEdgeLength() {
+    double exponent = params_.edgeLength > 0 ? 1 : -2.6;  // of the measure as a function of the edge length
+    double lastEdge = 0, lastMeasure = 0;
+    for (int run = 0;; ++run) {
+      exec_.progress(0.1 + 0.1 * run);
+      SHERD_ASSIGN(VolumeMesh mesh, meshOnce());
+      const double measure =
+          params_.edgeLength > 0 ? meanEdge(mesh.extract()) : static_cast<double>(mesh.tetCount());
+      const double goal = params_.edgeLength > 0 ? params_.edgeLength / surface_.size : params_.tets;
+      if (std::abs(measure / goal - 1) <= kCountTolerance || run + 1 == kSearchRuns) return mesh;
+      if (lastEdge > 0 && lastEdge != sizes_.edgeLength) {
+        const double slope = std::log(measure / lastMeasure) / std::log(sizes_.edgeLength / lastEdge);
+        exponent = params_.edgeLength > 0 ? std::clamp(slope, 0.3, 2.0) : std::clamp(slope, -5.0, -1.0);
+      }
+      lastEdge = sizes_.edgeLength, lastMeasure = measure;
+      const double next =
+          std::min(sizes_.edgeLength * std::pow(goal / measure, 1 / exponent), kLargestEdge * nominal_);
+      if (next == sizes_.edgeLength)
+        return mesh;  // gaps ask for more tetrahedra, and no larger edge is sensible
+      sizes_.edgeLength = next;
+    }
+  }
+
+  /// True if the cage is as promised. Otherwise notes the problem and asks for finer meshing where it is.
+  Result<bool> verify(TetMesh& cage) {
+    auto shells = splitShells(cage.nodes, cage.boundary);
+    if (!shells.ok()) return wantMore(failure("the cage's boundary is no manifold: " + shells.error().what));
+    if (topologyOf(*shells) != wanted_) return wantTopology(cage, topologyOf(*shells));
+    std::vector<Breach> breaches =
+        findBreaches(cage, mesh_->positions, mesh_->triangles, surface_.shells, exec_);
+    breaches =
+        pushOutward(cage, std::move(breaches), mesh_->positions, mesh_->triangles, surface_.shells, exec_);
+    if (!breaches.empty()) return wantEnclosure(cage, breaches);
+    return wantOpenGaps(cage);
+  }
+
+  bool wantMore(Error problem) {
+    problem_ = std::move(problem);
+    sizes_.edgeLength *= 0.85;
+    return false;
+  }
+
+  bool wantEnclosure(const TetMesh& cage, const std::vector<Breach>& breaches) {
+    problem_ =
+        failure(fmt::format("the surface could not be enclosed: it comes through the cage at {} m and {} "
+                            "other places",
+                            placeText(breaches.front().place), breaches.size() - 1),
+                "ask for more tetrahedra, or repair the surface there", "mesh");
+    for (const Breach& b : breaches) {
+      Vec3 middle = Vec3::Zero();
+      for (const Index n : cage.boundary[at(b.facet)]) middle += cage.nodes[at(n)] / 3;
+      addFiner((middle - surface_.centre) / surface_.size, 0.6);
+    }
+    return false;
+  }
+
+  void addFiner(const Vec3& place, double share) {
+    sizes_.finer.push_back({place, share * field_->edgeLength(place)});
+  }
+
+  /// Gaps whose middle should be outside but is in the cage.
+  std::vector<Gap> closedGaps(const TetMesh& cage, const std::vector<Gap>& gaps) const {
+    const SurfaceTree boundary(cage.nodes, cage.boundary);
+    std::vector<Gap> closed;
+    for (const Gap& gap : gaps)
+      if ((*field_)(gap.middle()) > 0.5 * field_->offset(gap.middle()) &&
+          boundary.contains(surface_.toMetres(gap.middle())))
+        closed.push_back(gap);
+    return closed;
+  }
+
+  bool wantOpenGaps(const TetMesh& cage) {
+    const std::vector<Gap> closed = closedGaps(cage, sizes_.open);
+    if (closed.empty()) return true;
+    problem_ = failure(gapText(closed.front()) + " could not be kept open",
+                       "widen or close it in the model, or ask for more tetrahedra", "mesh");
+    for (const Gap& gap : closed) addFiner(gap.middle(), 0.6);
+    return false;
+  }
+
+  bool wantTopology(const TetMesh& cage, const std::vector<std::pair<bool, int>>& got) {
+    std::string where;
+    const SurfaceTree boundary(cage.nodes, cage.boundary);
+    const Gap* narrowest = nullptr;
+    for (const Gap& gap : gaps_)
+      if ((narrowest == nullptr || gap.width < narrowest->width) &&
+          boundary.contains(surface_.toMetres(gap.middle())))
+        narrowest = &gap;
+    if (narrowest != nullptr) where = "; " + gapText(*narrowest) + " is closed";
+    problem_ =
+        failure(fmt::format("the cage has {} where the surface has {}{}", describeTopology(got),
+                            describeTopology(wanted_), where),
+                "widen or close narrow gaps and holes in the model, or ask for more tetrahedra", "mesh");
+    const bool bridged = refineBridges(cage);
+    if (bridged) return false;
+    if (smallGapsToo_) sizes_.closeness *= 0.6;
+    smallGapsToo_ = true;
+    chooseGaps();
+    return false;
+  }
+
+  /// Asks for finer meshing where the cage lies clearly outside the level set, as where it spans a gap.
+  bool refineBridges(const TetMesh& cage) {
+    const std::size_t before = sizes_.finer.size();
+    for (const Tetra& t : cage.tets)
+      for (const auto& e : kTetraEdge) {
+        const Vec3 middle = 0.5 * (cage.nodes[at(t[static_cast<std::size_t>(e[0])])] +
+                                   cage.nodes[at(t[static_cast<std::size_t>(e[1])])]);
+        const Vec3 x = (middle - surface_.centre) / surface_.size;
+        if ((*field_)(x) > 0.5 * field_->offset(x)) addFiner(x, 0.6);
+      }
+    return sizes_.finer.size() > before;
+  }
+
+  Result<TetMesh> finish(TetMesh cage) {
+    exec_.progress(0.92);
+    cage.surface = mesh_;
+    holdTriangles(cage, mesh_->positions, mesh_->triangles, exec_);
+    fillInsideFractions(cage, mesh_->positions, mesh_->triangles, exec_);
+    if (exec_.cancelled()) return cancelledError();
+    cage.quality = measureQuality(cage, mesh_->positions, mesh_->triangles);
+    exec_.progress(1);
+    return cage;
+  }
+
+  static constexpr double kLargestEdge = 1.5;  ///< nominal edge lengths that the search may go up to
+
+  std::shared_ptr<const TriMesh> mesh_;
+  UnitSurface surface_;
+  TetrahedralizeParams params_;
+  const Exec& exec_;
+  SurfaceTree tree_;
+  std::vector<std::pair<bool, int>> wanted_;
+  double nominal_ = 0;  ///< the edge length that the number of tetrahedra stands for without any gap
+  std::vector<Gap> gaps_;
+  bool smallGapsToo_ = false;
+  CageSizes sizes_;
+  std::shared_ptr<const LevelSet> levelSet_;
+  std::unique_ptr<CageField> field_;
+  std::optional<Error> problem_;
+};
+
+}  // namespace
+
+Result<TetMesh> tetrahedralize(std::shared_ptr<const TriMesh> surface, const TetrahedralizeParams& params,
+                               const Exec& exec) {
+  if (!surface) return failure("there is no surface", "connect one", "mesh");
+  if (params.tets < 1 && params.edgeLength <= 0)
+    return failure("the number of tetrahedra is not positive", "ask for some hundreds or thousands", "tets");
+  SHERD_ASSIGN(UnitSurface unit, checkedUnitSurface(*surface));
+  try {
+    return CageBuilder(std::move(surface), std::move(unit), params, exec).build();
+  } catch (const std::exception& e) {  // CGAL's and OpenVDB's
+    return failure(std::string("tetrahedralizing failed: ") + e.what(), "repair the surface", "mesh");
+  }
+}
+
+}  // namespace sherd

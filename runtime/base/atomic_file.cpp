@@ -1,0 +1,111 @@
+#include "base/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+namespace sherd {
+namespace {
+
+Error writeError(const std::string& path, int number) {
+  const std::string what = "cannot write '" + path + "': " + std::generic_category().message(number);
+  switch (number) {
+    case ENOSPC:
+    case EDQUOT:
+      return failure(what, "free some space on that disk, or write to another one");
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return failure(what, "choose a directory that you may write to");
+    case EISDIR:
+    case ENOTDIR:
+      return failure(what, "remove what stands in its place, or choose another directory");
+    default:
+      return failure(what);
+  }
+}
+
+/// Closes on destruction; close() tells of errors that only show then.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number() const { return number_; }
+  bool close() {
+    const int number = std::exchange(number_, -1);
+    return number < 0 || ::close(number) == 0;
+  }
+
+ private:
+  int number_;
+};
+
+bool holds(const std::string& path, std::string_view content) {
+  struct stat info {};
+  if (::lstat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return false;
+  if (static_cast<std::size_t>(info.st_size) != content.size()) return false;
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  std::array<char, 1 << 16> block;
+  while (!content.empty()) {
+    const ssize_t got = ::read(file.number(), block.data(), std::min(block.size(), content.size()));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0 || content.substr(0, static_cast<std::size_t>(got)) !=
+                        std::string_view(block.data(), static_cast<std::size_t>(got)))
+      return false;
+    content.remove_prefix(static_cast<std::size_t>(got));
+  }
+  return true;
+}
+
+/// 0, or the error number.
+int writeAll(const std::string& path, std::string_view content) {
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666));
+  if (file.number() < 0) return errno;
+  while (!content.empty()) {
+    const ssize_t put = ::write(file.number(), content.data(), content.size());
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) return errno;
+    content.remove_prefix(static_cast<std::size_t>(put));
+  }
+  return file.close() ? 0 : errno;
+}
+
+}  // namespace
+
+std::string partialName(const std::string& path) { return path + ".partial"; }
+
+Result<FileChange> writeFileAtomically(const std::string& path, std::string_view content) {
+  if (holds(path, content)) return FileChange::Kept;
+  const std::string partial = partialName(path);
+  int error = writeAll(partial, content);
+  if (error == 0 && ::rename(partial.c_str(), path.c_str()) != 0) error = errno;
+  if (error != 0) {
+    ::unlink(partial.c_str());
+    return writeError(path, error);
+  }
+  return FileChange::Written;
+}
+
+Result<void> makeDirectory(const std::string& directory) {
+  std::error_code code;
+  if (std::filesystem::is_directory(directory, code)) return {};
+  if (std::filesystem::exists(directory, code))
+    return failure("'" + directory + "' is a file, not a directory",
+                   "remove it, or choose another directory");
+  std::filesystem::create_directories(directory, code);
+  if (code)
+    return failure("cannot create the directory '" + directory + "': " + code.message(),
+                   "choose a directory that can be created and written to");
+  return {};
+}
+
+}  // namespace sherd

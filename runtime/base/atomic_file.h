@@ -1,0 +1,28 @@
+// Writing files so that nobody ever sees half of one.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "base/result.h"
+
+namespace sherd {
+
+enum class FileChange {
+  Written,  ///< the file is new or held something else
+  Kept,     ///< it held the same bytes already, and was not touched
+};
+
+/// What a file is called while it is being written. A run that is killed leaves at most this behind; the next
+/// write of the same file replaces it.
+std::string partialName(const std::string& path);
+
+/// Makes the file `path` hold `content`: written under partialName(path), then renamed. On failure the old
+/// file is as it was and nothing else is left. The error names the file and what the system said (no space,
+/// no permission, a directory in the way).
+Result<FileChange> writeFileAtomically(const std::string& path, std::string_view content);
+
+/// Creates `directory` and those above it where they are missing. The error says what is in the way.
+Result<void> makeDirectory(const std::string& directory);
+
+}  // namespace sherd

@@ -1,0 +1,47 @@
+#include "cli/json_events.h"
+
+#include <nlohmann/json.hpp>
+
+namespace sherd {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// File names need not be UTF-8: what isn't is replaced rather than thrown at.
+void print(const Json& event, std::ostream& out) {
+  out << event.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n' << std::flush;
+}
+
+}  // namespace
+
+void JsonEvents::finished(const NodeReport& report) {
+  const Graph::Node& node = graph_.nodes[static_cast<std::size_t>(report.node)];
+  std::string message;
+  auto addLine = [&](const char* prefix, const std::string& text) {
+    if (!message.empty()) message += '\n';
+    message += prefix;
+    message += text;
+  };
+  for (const Message& line : report.messages)
+    addLine(line.level == LogLevel::Warning ? "warning: " : "", line.text);
+  if (report.error) addLine("", report.error->text());
+  print(Json{{"event", "node"},
+             {"name", node.name},
+             {"type", node.type->name},
+             {"state", stateName(report.state)},
+             {"ms", report.ms},
+             {"threads", report.threads},
+             {"message", message}},
+        console_.out);
+}
+
+void jsonErrors(const Diagnostics& diagnostics, std::ostream& out) {
+  for (const Diagnostic& diagnostic : diagnostics.sorted())
+    print(Json{{"event", "error"}, {"message", diagnostic.text()}}, out);
+}
+
+void jsonDone(bool ok, double ms, const std::vector<std::string>& outputs, std::ostream& out) {
+  print(Json{{"event", "done"}, {"ok", ok}, {"ms", ms}, {"outputs", outputs}}, out);
+}
+
+}  // namespace sherd

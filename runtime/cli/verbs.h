@@ -1,0 +1,38 @@
+// The program's verbs. Each returns the exit code and prints only to its console.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/console.h"
+#include "graph/registry.h"
+#include "graph/variables.h"
+
+namespace sherd {
+
+struct RunOptions {
+  std::string graph;
+  std::string target, to;         ///< what to evaluate; both empty: the default of wantedNodes
+  std::vector<std::string> sets;  ///< "node.param=value"
+  std::vector<std::string> vars;  ///< "name=value"
+  bool keepGoing = false;
+  bool json = false;   ///< one object a line instead of text
+  bool quiet = false;  ///< warnings and errors only
+};
+int runVerb(const RunOptions& options, const Registry& registry, const Environment& environment,
+            Console& console);
+
+struct CheckOptions {
+  std::vector<std::string> graphs;
+  std::vector<std::string> sets, vars;
+};
+int checkVerb(const CheckOptions& options, const Registry& registry, const Environment& environment,
+              Console& console);
+
+struct NodesOptions {
+  std::string type;  ///< empty: all
+  bool json = false;
+};
+int nodesVerb(const NodesOptions& options, const Registry& registry, Console& console);
+
+}  // namespace sherd

@@ -1,0 +1,333 @@
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <unordered_map>
+
+#include "graph/graph.h"
+#include "graph/loops.h"
+#include "graph/param.h"
+#include "graph/suggest.h"
+
+namespace sherd {
+namespace {
+
+/// A node type's names for fast look-up, made once per type.
+struct TypeNames {
+  std::unordered_map<std::string, std::size_t> inputs, outputs, params;
+  std::vector<std::string> inputList, outputList, paramList;
+
+  explicit TypeNames(const NodeType& type) {
+    fill(type.inputs, inputs, inputList);
+    fill(type.outputs, outputs, outputList);
+    fill(type.params, params, paramList);
+  }
+
+ private:
+  template <class T>
+  static void fill(const std::vector<T>& from, std::unordered_map<std::string, std::size_t>& map,
+                   std::vector<std::string>& list) {
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      map.emplace(from[i].name, i);
+      list.push_back(from[i].name);
+    }
+  }
+};
+
+class Checker {
+ public:
+  Checker(const GraphFile& file, const Registry& registry, const Overrides& overrides,
+          const Environment& environment, Diagnostics& diagnostics)
+      : file_(file),
+        registry_(registry),
+        diagnostics_(diagnostics),
+        variables_(file, overrides.vars, environment, diagnostics) {
+    graph_.source = file.source;
+    graph_.fps = file.fps;
+    for (const NodeEntry& entry : file.nodes) {
+      graph_.index.emplace(entry.name, static_cast<int>(nodeNames_.size()));
+      nodeNames_.push_back(entry.name);
+    }
+    for (const Assignment& assignment : overrides.sets) takeOverride(assignment);
+  }
+
+  Graph check() {
+    for (const NodeEntry& entry : file_.nodes) makeNode(entry);
+    checkOverrides();
+    for (std::size_t i = 0; i < file_.nodes.size(); ++i) {
+      if (graph_.nodes[i].type == nullptr) continue;
+      wire(i);
+      readParams(i);
+    }
+    findTargets();
+    reportLoops(graph_, diagnostics_);
+    return std::move(graph_);
+  }
+
+ private:
+  struct Override {
+    Assignment assignment;
+    std::string param;
+  };
+
+  void takeOverride(const Assignment& assignment) {
+    const std::size_t dot = assignment.name.find('.');
+    const Origin origin{assignment.source, 0, 0};
+    if (dot == std::string::npos || dot == 0 || dot + 1 == assignment.name.size()) {
+      diagnostics_.add(origin, "", inQuotes(assignment.name) + " is no parameter",
+                       "write --set node.param=value");
+      return;
+    }
+    const std::string node = assignment.name.substr(0, dot);
+    const int i = graph_.find(node);
+    if (i < 0)
+      diagnostics_.add(origin, "", "the graph has no node " + inQuotes(node), nearNode(node));
+    else
+      overrides_[i].push_back({assignment, assignment.name.substr(dot + 1)});
+  }
+
+  /// A suggestion compares with all names; a large graph with many errors has to do without at some point.
+  std::string nearNode(const std::string& name) {
+    if (nodeNames_.size() > comparisonsLeft_) return {};
+    comparisonsLeft_ -= nodeNames_.size();
+    return suggestion(name, nodeNames_, "nodes");
+  }
+
+  const TypeNames& namesOf(const NodeType& type) {
+    auto& names = typeNames_[&type];
+    if (names == nullptr) names = std::make_unique<TypeNames>(type);
+    return *names;
+  }
+
+  void makeNode(const NodeEntry& entry) {
+    Graph::Node& node = graph_.nodes.emplace_back();
+    node.name = entry.name;
+    node.origin = entry.origin;
+    if (entry.type.empty()) return;  // missing or malformed: told by the reader
+    const NodeType* type = registry_.find(entry.type);
+    if (type == nullptr) {
+      std::vector<std::string> names;
+      for (const NodeType* known : registry_.all()) names.push_back(known->name);
+      diagnostics_.add(entry.typeOrigin, entry.name, "there is no node type " + inQuotes(entry.type),
+                       suggestion(entry.type, names, "node types"));
+      return;
+    }
+    const std::string current = inQuotes(type->name + '@' + std::to_string(type->version));
+    if (entry.version == type->version)
+      node.type = type;
+    else if (entry.version == 0)
+      diagnostics_.add(entry.typeOrigin, entry.name, inQuotes(entry.type) + " names no version",
+                       "write " + current);
+    else if (entry.version > type->version)
+      diagnostics_.add(
+          entry.typeOrigin, entry.name,
+          inQuotes(entry.type + '@' + std::to_string(entry.version)) + " is newer than this program",
+          "it knows " + current);
+    else
+      diagnostics_.add(
+          entry.typeOrigin, entry.name,
+          inQuotes(entry.type + '@' + std::to_string(entry.version)) + " is an old interface",
+          "write " + current + " and adapt the node to what `sherd nodes " + type->name + "` says");
+  }
+
+  /// --set of a parameter that the type doesn't have is told by the option, not by the file.
+  void checkOverrides() {
+    for (auto& [i, list] : overrides_) {
+      const NodeType* type = graph_.nodes[static_cast<std::size_t>(i)].type;
+      if (type == nullptr) continue;
+      const TypeNames& names = namesOf(*type);
+      auto isKnown = [&](const Override& o) {
+        if (names.params.contains(o.param)) return true;
+        diagnostics_.add({o.assignment.source, 0, 0}, graph_.nameOf(i, o.param),
+                         type->name + " has no parameter " + inQuotes(o.param),
+                         suggestion(o.param, names.paramList, "parameters"));
+        return false;
+      };
+      std::erase_if(list, [&](const Override& o) { return !isKnown(o); });
+    }
+  }
+
+  bool isOverridden(int node, const std::string& param) const {
+    const auto found = overrides_.find(node);
+    return found != overrides_.end() && std::any_of(found->second.begin(), found->second.end(),
+                                                    [&](const Override& o) { return o.param == param; });
+  }
+
+  void wire(std::size_t i) {
+    const NodeEntry& entry = file_.nodes[i];
+    Graph::Node& node = graph_.nodes[i];
+    const TypeNames& names = namesOf(*node.type);
+    std::vector<const LinkEntry*> inputs(node.type->inputs.size()), params(node.type->params.size());
+    for (const LinkEntry& link : entry.in) {
+      node.origins[link.port] = link.origin;
+      if (const auto port = names.inputs.find(link.port); port != names.inputs.end()) {
+        inputs[port->second] = &link;
+      } else if (const auto param = names.params.find(link.port); param != names.params.end()) {
+        params[param->second] = &link;
+      } else {
+        std::vector<std::string> known = names.inputList;
+        known.insert(known.end(), names.paramList.begin(), names.paramList.end());
+        diagnostics_.add(link.origin, node.name + '.' + link.port,
+                         node.type->name + " has no input " + inQuotes(link.port),
+                         suggestion(link.port, known, "inputs and parameters"));
+      }
+    }
+    for (std::size_t p = 0; p < inputs.size(); ++p) wireInput(i, node.type->inputs[p], inputs[p]);
+    for (std::size_t p = 0; p < params.size(); ++p) wireParam(i, node.type->params[p], params[p]);
+  }
+
+  void wireInput(std::size_t i, const PortInfo& port, const LinkEntry* link) {
+    Graph::Node& node = graph_.nodes[i];
+    const std::string where = node.name + '.' + port.name;
+    if (link == nullptr) {
+      if (port.required)
+        diagnostics_.add(node.origin, where, "the input is not connected",
+                         "wire an output of type " + port.type + " to it");
+      return;
+    }
+    const PortInfo* output = nullptr;
+    const int from = findOutput(*link, where, output);
+    if (output == nullptr) return;
+    if (output->type == port.type)
+      node.inputs.push_back({port.name, from, output->name});
+    else
+      complainOfType(*link, from, *output, where, port.type);
+  }
+
+  void wireParam(std::size_t i, const ParamInfo& param, const LinkEntry* link) {
+    Graph::Node& node = graph_.nodes[i];
+    if (link == nullptr || isOverridden(static_cast<int>(i), param.name)) return;  // --set wins over a wire
+    const std::string where = node.name + '.' + param.name;
+    const PortInfo* output = nullptr;
+    const int from = findOutput(*link, where, output);
+    if (output == nullptr) return;
+    if (acceptsWire(param, output->type)) {
+      node.wiredParams.push_back({param.name, from, output->name});
+    } else if (wireType(param.kind).empty()) {
+      diagnostics_.add(link->origin, where, "a parameter of " + kindText(param.kind) + " can't be wired",
+                       "set it in \"params\"");
+    } else {
+      complainOfType(*link, from, *output, where, wireType(param.kind));
+    }
+  }
+
+  void complainOfType(const LinkEntry& link, int from, const PortInfo& output, const std::string& where,
+                      const std::string& wanted) {
+    std::vector<std::string> fitting;
+    for (const PortInfo& other : graph_.nodes[static_cast<std::size_t>(from)].type->outputs)
+      if (other.type == wanted) fitting.push_back(link.node + '.' + other.name);
+    diagnostics_.add(
+        link.origin, where, inQuotes(link.node + '.' + output.name) + " is of type " + output.type,
+        "it would have to be " + wanted +
+            (fitting.empty() ? "" : ", as " + quotedList(fitting) + (fitting.size() == 1 ? " is" : " are")));
+  }
+
+  /// The linked node and its output, or null where there is none; then that has been told, unless the node's
+  /// type is unknown, which was told before.
+  int findOutput(const LinkEntry& link, const std::string& where, const PortInfo*& output) {
+    if (link.node.empty()) return -1;  // no link: told by the reader
+    const int from = graph_.find(link.node);
+    if (from < 0) {
+      diagnostics_.add(link.origin, where, "there is no node " + inQuotes(link.node), nearNode(link.node));
+      return from;
+    }
+    const NodeType* type = graph_.nodes[static_cast<std::size_t>(from)].type;
+    if (type == nullptr) return from;
+    if (type->outputs.empty()) {
+      diagnostics_.add(link.origin, where,
+                       inQuotes(link.node) + " is a " + type->name + ", which has no outputs",
+                       "wire another node");
+    } else if (link.output.empty()) {
+      output = &type->outputs.front();
+    } else {
+      const TypeNames& names = namesOf(*type);
+      const auto found = names.outputs.find(link.output);
+      if (found != names.outputs.end())
+        output = &type->outputs[found->second];
+      else
+        diagnostics_.add(link.origin, where, type->name + " has no output " + inQuotes(link.output),
+                         suggestion(link.output, names.outputList, "outputs"));
+    }
+    return from;
+  }
+
+  void readParams(std::size_t i) {
+    const NodeEntry& entry = file_.nodes[i];
+    Graph::Node& node = graph_.nodes[i];
+    const TypeNames& names = namesOf(*node.type);
+    std::set<std::string> given;  // a parameter that is given wrongly is not also missing
+    for (const LinkEntry& link : entry.in) given.insert(link.port);
+    for (const Setting& setting : entry.params) {
+      const auto found = names.params.find(setting.name);
+      const std::string where = node.name + '.' + setting.name;
+      if (found == names.params.end())
+        diagnostics_.add(
+            setting.origin, where, node.type->name + " has no parameter " + inQuotes(setting.name),
+            names.inputs.contains(setting.name) ? "it is an input: wire it in \"in\""
+                                                : suggestion(setting.name, names.paramList, "parameters"));
+      else if (isOverridden(static_cast<int>(i), setting.name))
+        continue;
+      else if (!given.insert(setting.name).second)
+        diagnostics_.add(setting.origin, where, "the parameter is both set and wired", "keep one of the two");
+      else
+        readParam(node, node.type->params[found->second], setting.value);
+    }
+    if (const auto found = overrides_.find(static_cast<int>(i)); found != overrides_.end())
+      for (const Override& o : found->second) {
+        given.insert(o.param);
+        readParam(node, *node.type->param(o.param), parseTyped(o.assignment.text, o.assignment.source));
+      }
+    for (const ParamInfo& info : node.type->params) {
+      if (!node.params.contains(info.name))
+        node.params[info.name] = defaultParam(info, file_.source->directory);
+      if (info.required && !given.contains(info.name))
+        diagnostics_.add(node.origin, node.name + '.' + info.name, "the parameter is missing",
+                         "it would have to be " + expectation(info));
+    }
+  }
+
+  void readParam(Graph::Node& node, const ParamInfo& info, const JsonValue& value) {
+    const std::string where = node.name + '.' + info.name;
+    node.origins[info.name] = value.origin;
+    const auto expanded = variables_.expand(value, where);
+    if (!expanded) return;
+    auto read = sherd::readParam(info, expanded->value, expanded->base);
+    if (read.ok())
+      node.params[info.name] = std::move(read).value();
+    else
+      diagnostics_.add(value.origin, where, read.error());
+  }
+
+  void findTargets() {
+    for (const TargetEntry& entry : file_.targets) {
+      Graph::Target& target = graph_.targets.emplace_back();
+      target.name = entry.name;
+      for (const auto& [name, origin] : entry.nodes) {
+        const int i = graph_.find(name);
+        if (i >= 0)
+          target.nodes.push_back(i);
+        else
+          diagnostics_.add(origin, "targets." + entry.name, "there is no node " + inQuotes(name),
+                           nearNode(name));
+      }
+    }
+  }
+
+  const GraphFile& file_;
+  const Registry& registry_;
+  Diagnostics& diagnostics_;
+  Variables variables_;
+  Graph graph_;
+  std::vector<std::string> nodeNames_;
+  std::size_t comparisonsLeft_ = 1000000;
+  std::unordered_map<const NodeType*, std::unique_ptr<TypeNames>> typeNames_;
+  std::map<int, std::vector<Override>> overrides_;
+};
+
+}  // namespace
+
+Graph checkGraph(const GraphFile& file, const Registry& registry, const Overrides& overrides,
+                 const Environment& environment, Diagnostics& diagnostics) {
+  return Checker(file, registry, overrides, environment, diagnostics).check();
+}
+
+}  // namespace sherd

@@ -1,0 +1,58 @@
+// A graph as it is written: names not looked up, variables not expanded, every part with its place.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "graph/json.h"
+
+namespace sherd {
+
+/// A key and its value: a variable, or a parameter of a node.
+struct Setting {
+  std::string name;
+  Origin origin;  ///< of the key
+  JsonValue value;
+};
+
+/// "port": "node" or "node.output".
+struct LinkEntry {
+  std::string port;
+  Origin origin;  ///< of the link's text
+  std::string node;    ///< empty where the text is no link, which then has been reported
+  std::string output;  ///< empty: the node's first
+};
+
+struct NodeEntry {
+  std::string name;
+  Origin origin;
+  std::string type;
+  int version = 0;  ///< N of Type@N
+  Origin typeOrigin;
+  std::vector<LinkEntry> in;
+  std::vector<Setting> params;
+};
+
+struct TargetEntry {
+  std::string name;
+  Origin origin;
+  std::vector<std::pair<std::string, Origin>> nodes;
+};
+
+struct GraphFile {
+  SourcePtr source;
+  double fps = 24;
+  std::optional<Setting> frames, wedge;  ///< known keys whose evaluation is not there yet
+  std::vector<Setting> vars;
+  std::vector<TargetEntry> targets;
+  std::vector<NodeEntry> nodes;
+};
+
+/// Reads what there is to read and reports all that is wrong in form: syntax, unknown keys, wrong kinds.
+GraphFile readGraph(std::string_view text, const SourcePtr& source, Diagnostics& diagnostics);
+/// The same from a file, which is shown in messages as `path` is given.
+GraphFile readGraphFile(const std::string& path, Diagnostics& diagnostics);
+
+}  // namespace sherd

@@ -1,0 +1,192 @@
+#include "graph/variables.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <system_error>
+
+#include "graph/suggest.h"
+
+namespace sherd {
+
+Environment Environment::ofProcess(std::filesystem::path assets) {
+  std::error_code problem;
+  return {std::filesystem::current_path(problem), std::move(assets),
+          [](const std::string& name) -> std::optional<std::string> {
+            const char* value = std::getenv(name.c_str());
+            return value == nullptr ? std::nullopt : std::optional<std::string>(value);
+          }};
+}
+
+Result<Assignment> parseAssignment(const std::string& option, const std::string& typed,
+                                   const Environment& environment) {
+  const std::size_t equals = typed.find('=');
+  if (equals == std::string::npos || equals == 0)
+    return Error{option + ' ' + typed + " sets nothing",
+                 option == "--set" ? "write --set node.param=value" : "write " + option + " name=value",
+                 {},
+                 Error::Kind::Input};
+  const Source source{option + ' ' + typed, environment.currentDirectory};
+  return Assignment{typed.substr(0, equals), typed.substr(equals + 1),
+                    std::make_shared<const Source>(source)};
+}
+
+Variables::Variables(const GraphFile& graph, const std::vector<Assignment>& overrides,
+                     const Environment& environment, Diagnostics& diagnostics)
+    : environment_(environment), diagnostics_(diagnostics) {
+  std::vector<std::string> names;
+  for (const Setting& setting : graph.vars) {
+    names.push_back(setting.name);
+    variables_[setting.name].setting = setting;
+  }
+  for (const Assignment& assignment : overrides) {
+    const auto found = variables_.find(assignment.name);
+    const Origin origin{assignment.source, 0, 0};
+    if (found == variables_.end())
+      diagnostics.add(origin, "", "the graph has no variable " + inQuotes(assignment.name),
+                      suggestion(assignment.name, names, "variables"));
+    else
+      found->second.setting = {assignment.name, origin, parseTyped(assignment.text, assignment.source)};
+  }
+  for (auto& [name, variable] : variables_) resolve(variable);
+}
+
+const Expanded* Variables::resolve(Variable& variable) {
+  if (variable.state == State::Resolved) return &variable.expanded;
+  if (variable.state == State::Broken) return nullptr;
+  const std::string where = "vars." + variable.setting.name;
+  if (variable.state == State::Resolving || stack_.size() >= kDeepest) {
+    std::string loop;
+    const auto first = std::find(stack_.begin(), stack_.end(), &variable);
+    for (auto it = first; it != stack_.end(); ++it) loop += (*it)->setting.name + " → ";
+    if (first == stack_.end())
+      diagnostics_.add(variable.setting.origin, where, "variables are nested more than 64 deep",
+                       "nest them less");
+    else
+      diagnostics_.add(variable.setting.origin, where,
+                       "the variable needs itself: " + loop + variable.setting.name,
+                       "give one of them a value of its own");
+    variable.state = State::Broken;
+    return nullptr;
+  }
+  variable.state = State::Resolving;
+  stack_.push_back(&variable);
+  auto expanded = expand(variable.setting.value, where);
+  stack_.pop_back();
+  if (variable.state == State::Broken || !expanded) {
+    variable.state = State::Broken;
+    return nullptr;
+  }
+  variable.expanded = std::move(*expanded);
+  variable.state = State::Resolved;
+  return &variable.expanded;
+}
+
+std::optional<Expanded> Variables::expand(const JsonValue& value, const std::string& where) {
+  if (value.kind == JsonValue::Kind::String) return expandText(value, where);
+  Expanded result{value, value.origin.source->directory};
+  for (JsonValue& item : result.value.items) {
+    auto expanded = expand(item, where);
+    if (!expanded) return std::nullopt;
+    item = std::move(expanded->value);
+  }
+  return result;
+}
+
+/// The environment and what the program sets itself.
+const Expanded* Variables::fromOutside(const std::string& name) {
+  if (const auto known = outside_.find(name); known != outside_.end()) return &known->second;
+  auto keep = [&](const std::string& text, const std::filesystem::path& directory) {
+    const auto source = std::make_shared<const Source>(Source{"${" + name + "}", directory});
+    return &outside_.emplace(name, Expanded{parseTyped(text, source), directory}).first->second;
+  };
+  if (name == "ASSETS") {
+    if (environment_.assets.empty()) return nullptr;
+    const Expanded* assets = keep(environment_.assets.string(), environment_.assets);
+    return assets;
+  }
+  if (const auto text = environment_.variable(name)) return keep(*text, environment_.currentDirectory);
+  return nullptr;
+}
+
+const Expanded* Variables::lookUp(const std::string& name, const Origin& origin, const std::string& where) {
+  const std::string base = name.substr(0, name.find(':'));
+  const std::string reference = inQuotes("${" + name + "}");
+  if (base == "frame") {
+    diagnostics_.add(origin, where, reference + " is not supported yet",
+                     "this version evaluates one moment only");
+    return nullptr;
+  }
+  if (base != name) {
+    diagnostics_.add(origin, where, reference + " has a format", "only ${frame} takes one");
+    return nullptr;
+  }
+  if (const auto found = variables_.find(name); found != variables_.end()) return resolve(found->second);
+  if (const Expanded* value = fromOutside(name)) return value;
+  if (name == "ASSETS") {
+    diagnostics_.add(origin, where, "the folder of assets was not found",
+                     "set the environment variable SHERD_ASSETS");
+    return nullptr;
+  }
+  constexpr std::size_t kMostSuggestions = 100;  // each compares with all names
+  std::vector<std::string> names{"ASSETS"};
+  if (diagnostics_.count() < kMostSuggestions)
+    for (const auto& [known, variable] : variables_) names.push_back(known);
+  diagnostics_.add(origin, where, "there is no variable " + inQuotes(name),
+                   suggestion(name, names, "variables"));
+  return nullptr;
+}
+
+/// Puts a variable's value into the middle of a text.
+bool Variables::append(Expanded& result, const std::string& name, const JsonValue& value,
+                       const std::string& where) {
+  const auto text = scalarText(value);
+  if (!text) {
+    diagnostics_.add(
+        result.value.origin, where,
+        "the variable " + inQuotes(name) + " is " + kindName(value.kind) + " and can't be part of a text",
+        "it would have to stand alone: " + inQuotes("${" + name + "}"));
+    return false;
+  }
+  result.value.text += *text;
+  if (result.value.text.size() <= kLongestText) return true;
+  diagnostics_.add(result.value.origin, where, "the text grows longer than 65536 bytes", "");
+  return false;
+}
+
+std::optional<Expanded> Variables::expandText(const JsonValue& value, const std::string& where) {
+  const std::string& text = value.text;
+  Expanded result{value, value.origin.source->directory};
+  if (text.find("${") == std::string::npos) return result;
+  result.value.text.clear();
+  result.value.typed.reset();
+  for (std::size_t at = 0; at < text.size();) {
+    if (text.compare(at, 3, "$${") == 0) {
+      result.value.text += "${";
+      at += 3;
+      continue;
+    }
+    if (text.compare(at, 2, "${") != 0) {
+      result.value.text += text[at++];
+      continue;
+    }
+    const std::size_t end = text.find('}', at);
+    if (end == std::string::npos) {
+      diagnostics_.add(value.origin, where, "a \"${\" is not closed", "it would have to end in }");
+      return std::nullopt;
+    }
+    const std::string name = text.substr(at + 2, end - at - 2);
+    const Expanded* found = lookUp(name, value.origin, where);
+    if (found == nullptr) return std::nullopt;
+    if (at == 0) result.base = found->base;
+    if (at == 0 && end + 1 == text.size()) {
+      result.value = found->value;
+      result.value.origin = value.origin;
+      return result;
+    }
+    if (!append(result, name, found->value, where)) return std::nullopt;
+    at = end + 1;
+  }
+  return result;
+}
+
+}  // namespace sherd

@@ -1,0 +1,78 @@
+// ${name} in strings: variables of the graph (overridden by --var), ${ASSETS}, environment variables, in this
+// order.
+// "$${" stands for a literal "${".
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graph/graph_file.h"
+
+namespace sherd {
+
+/// What a graph sees of the machine.
+struct Environment {
+  std::filesystem::path currentDirectory;  ///< absolute; what the command line's relative paths start from
+  std::filesystem::path assets;            ///< ${ASSETS}; empty where it was not found
+  std::function<std::optional<std::string>(const std::string&)> variable;  ///< of the process's environment
+
+  /// That of the running process; `assets` as given.
+  static Environment ofProcess(std::filesystem::path assets);
+};
+
+/// "name=value" of --var, or "node.param=value" of --set.
+struct Assignment {
+  std::string name;
+  std::string text;
+  SourcePtr source;  ///< the option as it was typed, with the current directory
+};
+
+/// Splits "name=value" typed behind `option`; an Error where there is no "=".
+Result<Assignment> parseAssignment(const std::string& option, const std::string& typed,
+                                   const Environment& environment);
+
+/// A value with its variables replaced.
+struct Expanded {
+  JsonValue value;
+  std::filesystem::path base;  ///< what it is relative to where it is a path: the directory of the source
+                               ///< that its first characters come from
+};
+
+class Variables {
+ public:
+  /// Takes the overrides over the graph's own and resolves all of them, reporting loops and unknown names.
+  Variables(const GraphFile& graph, const std::vector<Assignment>& overrides, const Environment& environment,
+            Diagnostics& diagnostics);
+
+  /// Replaces variables in strings, also those in lists. A string that is exactly "${x}" becomes x's value,
+  /// with its kind. Nothing where something is wrong, which then has been reported for `where`.
+  std::optional<Expanded> expand(const JsonValue& value, const std::string& where);
+
+ private:
+  enum class State { Untouched, Resolving, Resolved, Broken };
+  struct Variable {
+    Setting setting;
+    State state = State::Untouched;
+    Expanded expanded;
+  };
+  static constexpr std::size_t kLongestText = 1 << 16;
+  static constexpr std::size_t kDeepest = 64;
+
+  const Expanded* resolve(Variable& variable);
+  const Expanded* lookUp(const std::string& name, const Origin& origin, const std::string& where);
+  const Expanded* fromOutside(const std::string& name);
+  std::optional<Expanded> expandText(const JsonValue& value, const std::string& where);
+  bool append(Expanded& result, const std::string& name, const JsonValue& value, const std::string& where);
+
+  const Environment& environment_;
+  Diagnostics& diagnostics_;
+  std::map<std::string, Variable> variables_;
+  std::map<std::string, Expanded> outside_;
+  std::vector<const Variable*> stack_;  ///< those that are being resolved, for the text of a loop
+};
+
+}  // namespace sherd

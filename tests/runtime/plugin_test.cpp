@@ -1,0 +1,95 @@
+// Node packs: found, shaken hands with, and refused by name before anything in them is called.
+#include <gtest/gtest.h>
+
+#include "plugin/loader.h"
+#include "runtime/made_up.h"
+
+namespace sherd::test {
+namespace {
+
+std::string pack(const std::string& variant) {
+  return std::string(SHERD_TEST_PACKS) + '/' + variant + '/' + variant + "_nodes.so";
+}
+
+std::string refusal(const std::string& variant) {
+  Registry registry;
+  const auto loaded = loadPack(pack(variant), registry);
+  EXPECT_FALSE(loaded.ok());
+  EXPECT_TRUE(variant == "twice" || registry.all().empty());
+  return loaded.ok() ? "" : loaded.error().text();
+}
+
+TEST(Plugin, LoadsAPackWhoseNodesRun) {
+  Registry registry;
+  const auto loaded = loadPack(pack("good"), registry);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().text();
+  const Graph graph = graphOf(R"("p": {"type": "Packed@1"})", registry);
+  Cache cache;
+  CancelToken token;
+  const EvalReport report = evaluate(graph, {0}, cache, token);
+  ASSERT_TRUE(report.ok());
+  EXPECT_EQ(*report.outputs.at(0).at("value").value.as<std::int64_t>(), 42);
+}
+
+TEST(Plugin, RefusesPacksOfAnotherKindByName) {
+  const std::string abi = refusal("other_abi");
+  EXPECT_NE(abi.find("other_abi_nodes.so\" is built for ABI 2, this program has ABI 1; build it anew"),
+            std::string::npos)
+      << abi;
+  const std::string build = refusal("other_build");
+  EXPECT_NE(build.find("other_build_nodes.so\" is built with another compiler, this program with C++ "),
+            std::string::npos)
+      << build;
+  EXPECT_NE(refusal("other_layout").find("other_layout_nodes.so\" is built against other headers"),
+            std::string::npos);
+  EXPECT_NE(refusal("no_handshake").find("no_handshake_nodes.so\" is no node pack"), std::string::npos);
+  EXPECT_NE(refusal("twice").find("twice_nodes.so\": node type \"Packed@1\" is there already"),
+            std::string::npos);
+}
+
+TEST(Plugin, RefusesFilesThatAreNoLibraries) {
+  const TemporaryDirectory directory;
+  Registry registry;
+  const auto text = loadPack(directory.write("text_nodes.so", "no library"), registry);
+  ASSERT_FALSE(text.ok());
+  EXPECT_NE(text.error().what.find("text_nodes.so\" can't be loaded"), std::string::npos);
+  EXPECT_FALSE(loadPack(directory.path() / "missing.so", registry).ok());
+}
+
+TEST(Plugin, FindsPacksOnTheSearchPath) {
+  const TemporaryDirectory directory;
+  fs::create_directories(directory.path() / "bin");
+  fs::create_directories(directory.path() / "lib");
+  fs::create_directories(directory.path() / "more");
+  const fs::path bin = directory.path() / "bin";
+  const auto none = findPacks("", bin);
+  ASSERT_FALSE(none.ok());
+  EXPECT_NE(none.error().text().find("lib/sherd_nodes.so\"; build the target sherd_nodes"),
+            std::string::npos);
+  const std::string own = directory.write("lib/sherd_nodes.so", "");
+  EXPECT_EQ(*findPacks("", bin), std::vector<std::string>{own});
+  const std::string b = directory.write("more/b_nodes.so", ""), a = directory.write("more/a_nodes.so", "");
+  directory.write("more/libother.so", "");
+  const std::string more = (directory.path() / "more").string();
+  EXPECT_EQ(*findPacks(more, bin), (std::vector<std::string>{a, b, own}));
+  EXPECT_EQ(*findPacks(":" + b + "::" + a, bin), (std::vector<std::string>{b, a, own}));
+  const std::string shadow = directory.write("more/sherd_nodes.so", "");
+  EXPECT_EQ(*findPacks(shadow, bin), std::vector<std::string>{shadow});
+  const auto wrong = findPacks(more + "/gone", bin);
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_NE(wrong.error().what.find("gone\", which isn't there"), std::string::npos);
+}
+
+TEST(Plugin, FindsAssets) {
+  const TemporaryDirectory directory;
+  fs::create_directories(directory.path() / "build/bin");
+  EXPECT_EQ(findAssets("", directory.path() / "build/bin"), fs::path());
+  fs::create_directories(directory.path() / "assets");
+  EXPECT_EQ(findAssets("", directory.path() / "build/bin"), directory.path() / "assets");
+  fs::create_directories(directory.path() / "build/assets");
+  EXPECT_EQ(findAssets("", directory.path() / "build/bin"), directory.path() / "build/assets");
+  EXPECT_EQ(findAssets("/elsewhere", directory.path() / "build/bin"), fs::path("/elsewhere"));
+}
+
+}  // namespace
+}  // namespace sherd::test
