@@ -318,7 +318,7 @@ class Checker {
   Variables variables_;
   Graph graph_;
   std::vector<std::string> nodeNames_;
-  std::size_t comparisonsLeft_ = 1000000;
+  std::size_t comparisonsLeft_ = 200000;
   std::unordered_map<const NodeType*, std::unique_ptr<TypeNames>> typeNames_;
   std::map<int, std::vector<Override>> overrides_;
 };

@@ -1,0 +1,178 @@
+// The graphs that ship with sherd, run as a user runs them.
+#include <gtest/gtest.h>
+
+#include "support/exported_pieces.h"
+#include "support/program.h"
+
+namespace sherd {
+namespace {
+
+const std::string kGraphs = SHERD_SOURCE_DIR "/graphs/";
+const std::string kAssets = SHERD_SOURCE_DIR "/assets/";
+const std::string kMeshes = SHERD_SOURCE_DIR "/../shared/meshes/";
+const std::string kQuickPicture = " --set picture.width=120 --set picture.height=60 --set picture.samples=1";
+
+void expectBroken(const std::string& directory, const std::string& source, std::size_t least, std::size_t most) {
+  const ExportedReport report = measureExported(directory, source);
+  EXPECT_GE(report.pieces, least);
+  EXPECT_LE(report.pieces, most);
+  EXPECT_EQ(report.openEdges, 0u);
+  EXPECT_EQ(report.lonelyCracks, 0u);
+  EXPECT_LT(report.volumeError, 1e-9);
+}
+
+TEST(Graphs, AllPassCheck) {
+  int graphs = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kGraphs)) {
+    if (entry.path().extension() != ".json") continue;
+    const ProgramRun run = runProgram("check '" + entry.path().string() + "'");
+    EXPECT_EQ(run.exitCode, 0) << run.output;
+    ++graphs;
+  }
+  EXPECT_GE(graphs, 4);
+}
+
+TEST(Graphs, MushroomDropBreaks) {
+  const ScratchDirectory scratch;
+  const ProgramRun run =
+      runProgram("run '" + kGraphs + "mushroom_drop.json' --var out='" + scratch.file("a") + "'" + kQuickPicture);
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  expectBroken(scratch.file("a"), kAssets + "mushroom.obj", 10, 60);
+  EXPECT_GT(std::filesystem::file_size(scratch.file("a/preview.png")), 500u);
+}
+
+TEST(Graphs, SameBytesWithOneAndTwoThreadsAndInTwoRuns) {
+  const ScratchDirectory scratch;
+  std::map<std::string, std::string> first;
+  for (const char* options : {" --threads 1", " --threads 2", " --threads 2"}) {
+    const std::string out = scratch.file("same");
+    std::filesystem::remove_all(out);
+    const ProgramRun run =
+        runProgram("run '" + kGraphs + "mushroom_drop.json' --var out='" + out + "'" + kQuickPicture + options);
+    ASSERT_EQ(run.exitCode, 0) << run.output;
+    const auto files = filesBelow(out);
+    EXPECT_GT(files.size(), 20u);
+    if (first.empty()) first = files;
+    for (const auto& [name, content] : files) EXPECT_TRUE(content == first[name]) << name << options;
+    EXPECT_EQ(files.size(), first.size());
+  }
+}
+
+TEST(Graphs, FewerPiecesAfterMoreLeaveNoStaleFilesAndTouchNothingElse) {
+  const ScratchDirectory scratch;
+  const std::string out = scratch.file("pieces"), run = "run '" + kGraphs + "mushroom_drop.json' --target all" + kQuickPicture +
+                                                      " --var out='" + out + "' --var degree=";
+  ASSERT_EQ(runProgram(run + "30").exitCode, 0);
+  EXPECT_GE(measureExported(out, kAssets + "mushroom.obj").pieces, 30u);
+  std::ofstream(out + "/notes.txt") << "mine";
+  std::ofstream(out + "/piece_9999_surface.obj") << "mine too";
+  ASSERT_EQ(runProgram(run + "5").exitCode, 0);
+  std::filesystem::remove(out + "/piece_9999_surface.obj");
+  expectBroken(out, kAssets + "mushroom.obj", 5, 7);
+  EXPECT_EQ(contentOf(out + "/notes.txt"), "mine");
+}
+
+TEST(Graphs, AWeakHitBreaksNothingAndSaysSo) {
+  const ScratchDirectory scratch;
+  const ProgramRun run = runProgram("run '" + kGraphs + "mushroom_drop.json' --var gamma=1e9 --var out='" +
+                                    scratch.file("whole") + "'" + kQuickPicture);
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  EXPECT_NE(run.output.find("not break"), std::string::npos) << run.output;
+  EXPECT_TRUE(std::filesystem::exists(scratch.file("whole/piece_0001_surface.obj")));
+  EXPECT_FALSE(std::filesystem::exists(scratch.file("whole/piece_0001_crack.obj")));
+}
+
+struct BadCase {
+  const char* name;
+  const char* arguments;  ///< behind `run mushroom_drop.json`
+  int exitCode;
+  const char* says;
+};
+
+class BadInput : public testing::TestWithParam<BadCase> {};
+
+TEST_P(BadInput, IsRefusedByName) {
+  const ScratchDirectory scratch;
+  std::ofstream(scratch.file("empty.obj"));
+  std::ofstream(scratch.file("words.obj")) << "this is no mesh\n";
+  std::ofstream(scratch.file("open.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  std::ofstream(scratch.file("nan.obj")) << "v 0 0 nan\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+  std::ofstream(scratch.file("file")) << "not a directory\n";
+  const ProgramRun run = runProgram("run '" + kGraphs + "mushroom_drop.json' --var out='" + scratch.file("out") + "' " +
+                                    GetParam().arguments,
+                                    "cd '" + scratch.file("") + "' &&");
+  EXPECT_EQ(run.exitCode, GetParam().exitCode) << run.output;
+  EXPECT_NE(run.output.find(GetParam().says), std::string::npos) << run.output;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Cases, BadInput,
+    testing::Values(BadCase{"MissingFile", "--var mesh=nowhere.obj", 2, "nowhere.obj"},
+                    BadCase{"EmptyFile", "--var mesh=empty.obj", 1, "empty.obj"},
+                    BadCase{"NoMesh", "--var mesh=words.obj", 1, "words.obj"},
+                    BadCase{"OpenMesh", "--var mesh=open.obj", 1, "open"},
+                    BadCase{"NotANumber", "--var mesh=nan.obj", 1, "NaN"},
+                    BadCase{"UnknownVariable", "--var mehs=a.obj", 2, "mesh"},
+                    BadCase{"UnknownNode", "--set hti.density=1", 2, "hit"},
+                    BadCase{"UnknownParameter", "--set hit.densty=1", 2, "density"},
+                    BadCase{"OutOfRange", "--set hit.poisson=0.7", 2, "poisson"},
+                    BadCase{"WrongType", "--set hit.density=heavy", 2, "density"},
+                    BadCase{"UnknownTarget", "--target al", 2, "all"},
+                    BadCase{"OutIsAFile", "--var out=file", 2, "file"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+class SlowGraphs : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+TEST_P(SlowGraphs, BreakTheirModels) {
+  const auto [graph, model] = GetParam();
+  const ScratchDirectory scratch;
+  const ProgramRun run =
+      runProgram("run '" + kGraphs + graph + "' --var out='" + scratch.file("out") + "'" + kQuickPicture);
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  expectBroken(scratch.file("out"), kAssets + model, 10, 80);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, SlowGraphs,
+                         testing::Values(std::pair("first_fracture.json", "vase.obj"),
+                                         std::pair("wall_ball.json", "wall.obj")),
+                         [](const auto& info) { return std::string(info.param.second).substr(0, 4); });
+
+TEST(SlowGraphs, ThreeToughnessesGiveFallingCounts) {
+  const ScratchDirectory scratch;
+  const ProgramRun run = runProgram("run '" + kGraphs + "toughness.json' --var out='" + scratch.file("out") + "'" +
+                                    " --set weak_picture.samples=1 --set medium_picture.samples=1"
+                                    " --set tough_picture.samples=1");
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  std::size_t last = 1000;
+  for (const char* name : {"weak", "medium", "tough"}) {
+    const ExportedReport report = measureExported(scratch.file("out/") + name, kAssets + "table.obj");
+    EXPECT_LT(report.pieces, last) << name;
+    EXPECT_EQ(report.openEdges + report.lonelyCracks, 0u) << name;
+    last = report.pieces;
+  }
+}
+
+class SlowModels : public testing::TestWithParam<std::tuple<const char*, int>> {};
+
+TEST_P(SlowModels, KeepEveryPromise) {
+  const auto [model, degree] = GetParam();
+  const std::string mesh = kMeshes + model + ".obj";
+  if (!std::filesystem::exists(mesh)) GTEST_SKIP() << mesh << " is not there";
+  const ScratchDirectory scratch;
+  const ProgramRun run = runProgram("run '" + kGraphs + "first_fracture.json' --to crack --var mesh='" + mesh +
+                                    "' --var degree=" + std::to_string(degree) + " --var out='" + scratch.file("out") + "'");
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  const auto wanted = static_cast<std::size_t>(degree);
+  expectBroken(scratch.file("out"), mesh, wanted, 2 * wanted);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, SlowModels,
+                         testing::Combine(testing::Values("horse", "bunny", "bunny_7k", "spot", "fertility", "knight",
+                                                          "three_holes", "screwdriver", "armadillo"),
+                                          testing::Values(48)),
+                         [](const auto& info) {
+                           return std::string(std::get<0>(info.param)) + "_" + std::to_string(std::get<1>(info.param));
+                         });
+
+}  // namespace
+}  // namespace sherd
