@@ -29,7 +29,7 @@ Result<void> checkParams(const CvdParams& params) {
 
 std::string report(const Partition& cells) {
   const std::string threshold =
-      cells.gamma > 0
+      !cells.degreeGiven
           ? fmt::format(" ({} γ = {:.6g})", cells.energy < cells.gamma ? "below" : "not below", cells.gamma)
           : std::string();
   return fmt::format("{} {}, E_D = {:.6g} J·m²{}, {} {} {}", cells.siteCount(),
@@ -83,8 +83,11 @@ Result<Partition> cvd(const std::shared_ptr<const Embedding>& embedding, const W
   SHERD_ASSIGN(const Lloyd::End end, settle(degree, lloyd, *embedding, weights, params, limits, exec));
   if (exec.cancelled()) return cancelledError();
 
-  Partition cells{embedding,      weights.material,           lloyd.sites(),  lloyd.labels(),
-                  lloyd.energy(), start ? start->gamma : 0.0, end.iterations, end.converged};
+  // γ belongs to the sites that a search found by it: another number of them is one asked for.
+  const bool degreeGiven = start == nullptr || start->degreeGiven || given != degree;
+  Partition cells{embedding,      weights.material, lloyd.sites(),
+                  lloyd.labels(), lloyd.energy(),   degreeGiven ? 0.0 : start->gamma,
+                  degreeGiven,    end.iterations,   end.converged};
   exec.info(report(cells));
   return cells;
 }

@@ -54,7 +54,8 @@ struct CvdParams {
 /// starts; with a higher degree, more are grown from them; with a lower one, or null, all are grown from one.
 /// (Growing from one to N gives what PredictDegree's search gives at N for the same seed.) More sites than
 /// there are distinct nodes are not grown; a warning says so. Sites given may coincide, and cells may be
-/// empty. Says N, E_D, γ and how it ended. The result's sites are its cells' centroids (within the tolerance)
+/// empty. γ is that of the sites given, unless `degree` asks for another number. Says N, E_D, γ and
+/// how it ended. The result's sites are its cells' centroids (within the tolerance)
 /// and its labels exactly the nearest of these sites, the lower index where two are equally near (`exact`).
 /// Errors: sizes or dimensions that don't match; coordinates, weights or sites that are not finite; neither
 /// sites nor degree. Cost per pass O(nodes · N · d) at worst, far less where few sites move.

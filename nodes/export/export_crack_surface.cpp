@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <mutex>
 #include <optional>
 
 #include "base/atomic_file.h"
@@ -15,6 +16,8 @@ namespace sherd {
 namespace {
 
 using Params = ExportCrackSurfaceParams;
+
+constexpr const char* kDescription = "pieces.json";
 
 std::string bytesOf(const Fragments& f, const Piece& piece, bool crack, const Params& params) {
   if (params.format == Params::Format::Obj)
@@ -45,26 +48,45 @@ struct Outcome {
   bool written = false;
 };
 
-Outcome put(const std::string& path, const std::string& bytes) {
-  Outcome outcome;
-  outcome.digest = Hasher().add(bytes).digest();
-  const auto change = writeFileAtomically(path, bytes);
-  if (change.ok())
-    outcome.written = *change == FileChange::Written;
-  else
-    outcome.error = change.error();
-  return outcome;
-}
+/// Puts content under names. The description of an earlier run's pieces goes before the first file that
+/// changes, so that it never stands beside pieces that it doesn't describe.
+class Writer {
+ public:
+  explicit Writer(const OwnedFiles& files) : files_(files) {}
+
+  /// Safe from several threads at once, under different names.
+  Outcome put(const std::string& name, const std::string& bytes) {
+    Outcome outcome;
+    outcome.digest = Hasher().add(bytes).digest();
+    const std::string path = files_.path(name);
+    if (fileHolds(path, bytes)) return outcome;
+    std::call_once(withdrawn_, [this] { withdrawal_ = files_.withdraw(kDescription); });
+    if (!withdrawal_.ok()) {
+      outcome.error = withdrawal_.error();
+      return outcome;
+    }
+    const auto change = writeFileAtomically(path, bytes);
+    if (change.ok())
+      outcome.written = *change == FileChange::Written;
+    else
+      outcome.error = change.error();
+    return outcome;
+  }
+
+ private:
+  const OwnedFiles& files_;
+  std::once_flag withdrawn_;
+  Result<void> withdrawal_;
+};
 
 /// Writes all of the pieces' files, in parallel; stops early on cancel.
 std::vector<Outcome> writePieces(const Fragments& f, const Params& params, const std::vector<Job>& jobs,
-                                 const std::vector<std::string>& names, const OwnedFiles& files,
-                                 const Exec& exec) {
+                                 const std::vector<std::string>& names, Writer& writer, const Exec& exec) {
   std::vector<Outcome> outcomes(jobs.size());
   std::atomic<std::size_t> done{0};
   parallelFor(exec, jobs.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      outcomes[i] = put(files.path(names[i]), bytesOf(f, f.pieces[jobs[i].piece], jobs[i].crack, params));
+      outcomes[i] = writer.put(names[i], bytesOf(f, f.pieces[jobs[i].piece], jobs[i].crack, params));
       exec.progress(static_cast<double>(++done) / static_cast<double>(jobs.size()));
     }
   });
@@ -83,7 +105,7 @@ void warnOfLosses(const TriMesh& source, const Params& params, const Exec& exec)
 
 /// E_D and γ in words.
 std::string verdict(const Fragments& f) {
-  if (f.gamma == 0) return fmt::format("E_D = {:.4g} J·m², degree given", f.energy);
+  if (f.degreeGiven) return fmt::format("E_D = {:.4g} J·m², degree given", f.energy);
   return fmt::format("E_D = {:.4g} J·m² is {} γ = {:.4g} J·m²", f.energy,
                      f.energy < f.gamma ? "below" : "not below", f.gamma);
 }
@@ -101,45 +123,66 @@ void sayOutcome(const Fragments& f, const std::string& directory, const ExportRe
         fmt::format("removed {} file{} of an earlier run", report.removed, report.removed == 1 ? "" : "s"));
 }
 
-}  // namespace
-
-Result<ExportReport> exportCrackSurface(const Fragments& f, const Params& params, const Exec& exec) {
-  SHERD_CHECK(checkInput(f));
-  const char* extension = params.format == Params::Format::Obj ? ".obj" : ".ply";
+/// What is going to be written, the description last.
+struct Plan {
   std::vector<Job> jobs;
-  std::vector<std::string> names;
-  std::vector<PieceFileNames> pieceFiles(f.pieces.size());
-  for (std::size_t p = 0; p < f.pieces.size(); ++p) {
-    jobs.push_back({p, false});
-    names.push_back(pieceFiles[p].surface = f.pieces[p].name + "_surface" + extension);
-    if (f.pieces[p].crack.empty()) continue;
-    jobs.push_back({p, true});
-    names.push_back(pieceFiles[p].crack = f.pieces[p].name + "_crack" + extension);
-  }
-  names.push_back("pieces.json");
+  std::vector<std::string> names;  ///< one per job, and the description's
+  std::vector<PieceFileNames> pieceFiles;
+};
 
+Plan plan(const Fragments& f, const Params& params) {
+  const char* extension = params.format == Params::Format::Obj ? ".obj" : ".ply";
+  Plan plan;
+  plan.pieceFiles.resize(f.pieces.size());
+  for (std::size_t p = 0; p < f.pieces.size(); ++p) {
+    plan.jobs.push_back({p, false});
+    plan.names.push_back(plan.pieceFiles[p].surface = f.pieces[p].name + "_surface" + extension);
+    if (f.pieces[p].crack.empty()) continue;
+    plan.jobs.push_back({p, true});
+    plan.names.push_back(plan.pieceFiles[p].crack = f.pieces[p].name + "_crack" + extension);
+  }
+  plan.names.push_back(kDescription);
+  return plan;
+}
+
+Result<ExportReport> writeInto(const Fragments& f, const Params& params, const Exec& exec) {
+  const auto [jobs, names, pieceFiles] = plan(f, params);
   SHERD_CHECK(makeDirectory(params.directory));
   SHERD_ASSIGN(const OwnedFiles files, OwnedFiles::open(params.directory, names));
   warnOfLosses(*f.tets->surface, params, exec);
   if (exec.cancelled()) return cancelledError();
   SHERD_CHECK(files.claim());
-  std::vector<Outcome> outcomes = writePieces(f, params, jobs, names, files, exec);
+  Writer writer(files);
+  std::vector<Outcome> outcomes = writePieces(f, params, jobs, names, writer, exec);
   if (exec.cancelled()) return cancelledError();
-  outcomes.push_back(put(files.path("pieces.json"), piecesJson(f, pieceFiles)));
+  for (const Outcome& outcome : outcomes)
+    if (outcome.error) return *outcome.error;
+  outcomes.push_back(writer.put(kDescription, piecesJson(f, pieceFiles)));
+  if (outcomes.back().error) return *outcomes.back().error;
 
   ExportReport report;
   std::vector<Digest> digests;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    if (outcomes[i].error) return *outcomes[i].error;
     digests.push_back(outcomes[i].digest);
     report.files.push_back(files.path(names[i]));
     ++(outcomes[i].written ? report.written : report.kept);
   }
   SHERD_ASSIGN(report.removed, files.commit(digests));
   report.files.push_back(files.path(OwnedFiles::manifestName));
-  report.description = files.path("pieces.json");
+  report.description = files.path(kDescription);
   sayOutcome(f, params.directory, report, exec);
   return report;
+}
+
+}  // namespace
+
+Result<ExportReport> exportCrackSurface(const Fragments& f, const Params& params, const Exec& exec) {
+  SHERD_CHECK(checkInput(f));
+  Result<ExportReport> report = writeInto(f, params, exec);
+  if (report.ok() || report.error().kind == Error::Kind::Cancelled) return report;
+  Error error = report.error();
+  error.port = "directory";
+  return error;
 }
 
 }  // namespace sherd

@@ -50,8 +50,10 @@ struct ExportReport {
 /// range. Files of an earlier run that the manifest lists are replaced or removed; anything else is left
 /// alone, and a foreign file under one of our names is an error before anything is written. Says what was
 /// written, and where nothing broke, that, with E_D and γ. Errors: the directory cannot be made or written,
-/// the disk is full, a foreign file is in the way, the manifest is damaged. After an error or a cancel every
-/// file is either whole or absent, and the next run cleans up. Cost O(triangles).
+/// the disk is full, a foreign file is in the way, the manifest is damaged. these name the parameter
+/// `directory`. An old pieces.json is removed before the first file that changes is written, and the new one
+/// comes last: after an error or a cancel every file is either whole or absent, a directory without
+/// pieces.json is incomplete, and the next run cleans up. Cost O(triangles).
 Result<ExportReport> exportCrackSurface(const Fragments& fragments, const ExportCrackSurfaceParams& params,
                                         const Exec& exec);
 

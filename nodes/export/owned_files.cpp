@@ -84,6 +84,11 @@ Result<void> OwnedFiles::claim() const {
   return write(all);
 }
 
+Result<void> OwnedFiles::withdraw(const std::string& name) const {
+  const auto gone = removeFile(path(name));
+  return gone.ok() ? Result<void>{} : gone.error();
+}
+
 Result<std::size_t> OwnedFiles::commit(const std::vector<Digest>& digests) const {
   Entries now;
   for (std::size_t i = 0; i < names_.size(); ++i) now[names_[i]] = digests[i].hex();

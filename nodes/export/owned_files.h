@@ -25,6 +25,8 @@ class OwnedFiles {
   static Result<OwnedFiles> open(std::string directory, std::vector<std::string> names);
 
   Result<void> claim() const;
+  /// Removes the file of that name, one of those given to open(), if it is there. After claim().
+  Result<void> withdraw(const std::string& name) const;
   /// `digests` has one entry per name given to open(). Returns how many files were removed.
   Result<std::size_t> commit(const std::vector<Digest>& digests) const;
   std::string path(const std::string& name) const;

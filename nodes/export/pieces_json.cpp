@@ -58,8 +58,8 @@ std::string piecesJson(const Fragments& f, const std::vector<PieceFileNames>& fi
   json["N"] = f.sites;
   json["E_D"] = f.energy;
   json["gamma"] = f.gamma;
-  json["degree_given"] = f.gamma == 0;
-  json["below_threshold"] = f.gamma > 0 && f.energy < f.gamma;
+  json["degree_given"] = f.degreeGiven;
+  json["below_threshold"] = !f.degreeGiven && f.energy < f.gamma;
   json["piece_count"] = f.pieces.size();
   json["pieces"] = Json::array();
   for (std::size_t p = 0; p < f.pieces.size(); ++p)

@@ -1,5 +1,5 @@
-// Union-find with path halving; the root of a set is its least member, so that results do not depend on the order
-// of joins.
+// Union-find with path halving; the root of a set is its least member, so that results do not depend on the
+// order of joins.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,9 @@ namespace sherd {
 
 class DisjointSets {
  public:
-  explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
+  explicit DisjointSets(std::size_t n) : parent_(n) {
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  }
 
   std::size_t find(std::size_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];

@@ -18,7 +18,8 @@ EdgeTable buildEdgeTable(std::span<const Triangle> triangles, std::size_t vertex
   std::vector<Index> fill(begin.begin(), begin.end() - 1);
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (int c = 0; c < 3; ++c) {
-      const Index a = triangles[t][static_cast<std::size_t>(c)], b = triangles[t][static_cast<std::size_t>((c + 1) % 3)];
+      const Index a = triangles[t][static_cast<std::size_t>(c)],
+                  b = triangles[t][static_cast<std::size_t>((c + 1) % 3)];
       sides[at(fill[at(std::min(a, b))]++)] = {std::max(a, b), static_cast<Index>(t), c};
     }
   EdgeTable table;

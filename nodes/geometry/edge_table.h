@@ -10,9 +10,10 @@
 namespace sherd {
 
 struct EdgeTable {
-  std::vector<std::array<Index, 2>> ends;           ///< per edge, ends[0] < ends[1], ascending
-  std::vector<std::array<Index, 3>> ofTriangle;     ///< per triangle: edge of corners (0,1), (1,2), (2,0)
-  std::vector<Index> useBegin, use;                 ///< triangles of edge e: use[useBegin[e]] … use[useBegin[e + 1] − 1], ascending
+  std::vector<std::array<Index, 2>> ends;        ///< per edge, ends[0] < ends[1], ascending
+  std::vector<std::array<Index, 3>> ofTriangle;  ///< per triangle: edge of corners (0,1), (1,2), (2,0)
+  std::vector<Index> useBegin,
+      use;  ///< triangles of edge e: use[useBegin[e]] … use[useBegin[e + 1] − 1], ascending
 
   std::span<const Index> trianglesOf(Index edge) const {
     return std::span(use).subspan(at(useBegin[at(edge)]), at(useBegin[at(edge) + 1] - useBegin[at(edge)]));

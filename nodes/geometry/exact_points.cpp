@@ -18,7 +18,8 @@ using Interval = CGAL::Interval_nt<true>;
 
 Kernel::Point_3 toPoint(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
-/// A product of displacements ε(row, column): a matching of rows (points, by ascending number) to coordinates.
+/// A product of displacements ε(row, column): a matching of rows (points, by ascending number) to
+/// coordinates.
 struct Term {
   std::array<int, 4> column{-1, -1, -1, -1};  ///< per row, −1: this row is not displaced
   std::uint32_t weight = 0;                   ///< exponent of ε: the smaller, the greater the displacement
@@ -74,8 +75,10 @@ int coefficientSign(const std::array<const Vec3*, 4>& rows, const Term& term) {
     bool contains = true;
     Rational product = p.sign;
     for (std::size_t row = 0; row < 4 && contains; ++row) {
-      if (term.column[row] >= 0) contains = term.column[row] == p.column[row];
-      else if (p.column[row] < 3) product *= Rational((*rows[row])[p.column[row]]);
+      if (term.column[row] >= 0)
+        contains = term.column[row] == p.column[row];
+      else if (p.column[row] < 3)
+        product *= Rational((*rows[row])[p.column[row]]);
     }
     if (contains) sum += product;
   }
@@ -90,7 +93,8 @@ int displacedOrientation(std::array<std::pair<Index, const Vec3*>, 4> points) {
         std::swap(points[j], points[j + 1]);
         sign = -sign;
       }
-  const std::array<const Vec3*, 4> rows{points[0].second, points[1].second, points[2].second, points[3].second};
+  const std::array<const Vec3*, 4> rows{points[0].second, points[1].second, points[2].second,
+                                        points[3].second};
   for (const Term& term : terms())
     if (const int s = coefficientSign(rows, term); s != 0) return sign * s;
   return sign;  // not reached: the last terms have coefficient ±1
@@ -103,7 +107,8 @@ Number determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t k = 0; k < 3; ++k)
       m[i][k] = Number((*rows[i])[static_cast<Eigen::Index>(k)]) - Number(a[static_cast<Eigen::Index>(k)]);
-  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 

@@ -21,7 +21,8 @@ struct Sums {
 
 }  // namespace
 
-SolidIntegrals integrateSolid(std::span<const Vec3> positions, std::span<const std::span<const Triangle>> lists) {
+SolidIntegrals integrateSolid(std::span<const Vec3> positions,
+                              std::span<const std::span<const Triangle>> lists) {
   SolidIntegrals result;
   const Vec3* origin = nullptr;
   for (const auto& list : lists)
@@ -39,7 +40,8 @@ SolidIntegrals integrateSolid(std::span<const Vec3> positions, std::span<const s
       corners += 3;
     }
   result.volume = sums.volume;
-  const Vec3 local = sums.volume != 0 ? Vec3(sums.first / sums.volume) : Vec3(mean / static_cast<double>(corners));
+  const Vec3 local =
+      sums.volume != 0 ? Vec3(sums.first / sums.volume) : Vec3(mean / static_cast<double>(corners));
   result.centroid = *origin + local;
   result.secondMoment = sums.second - sums.volume * local * local.transpose();
   return result;

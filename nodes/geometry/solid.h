@@ -8,8 +8,8 @@
 
 namespace sherd {
 
-/// Integrals over the solid that a closed, outward-oriented surface encloses. Surfaces of several shells count
-/// with their signs, so a void subtracts.
+/// Integrals over the solid that a closed, outward-oriented surface encloses. Surfaces of several shells
+/// count with their signs, so a void subtracts.
 struct SolidIntegrals {
   double volume = 0;                 ///< m³; negative where the surface is inside out
   Vec3 centroid = Vec3::Zero();      ///< m; the vertices' mean where the volume is 0
@@ -24,7 +24,8 @@ struct SolidIntegrals {
 /// Sums about the first vertex used, so that a body far from the origin keeps its digits. Cost O(triangles).
 SolidIntegrals integrateSolid(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 /// The same over several triangle lists that together close (a piece's skin and its crack).
-SolidIntegrals integrateSolid(std::span<const Vec3> positions, std::span<const std::span<const Triangle>> lists);
+SolidIntegrals integrateSolid(std::span<const Vec3> positions,
+                              std::span<const std::span<const Triangle>> lists);
 
 /// Signed volume alone, m³.
 double solidVolume(std::span<const Vec3> positions, std::span<const Triangle> triangles);

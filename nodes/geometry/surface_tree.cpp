@@ -6,6 +6,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Side_of_triangle_mesh.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "base/rng.h"
@@ -48,7 +49,8 @@ struct SurfaceTree::Impl {
 SurfaceTree::SurfaceTree(std::span<const Vec3> positions, std::span<const Triangle> triangles)
     : impl_(std::make_unique<Impl>()) {
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const Kernel::Triangle_3 triangle(toPoint(positions[at(triangles[t][0])]), toPoint(positions[at(triangles[t][1])]),
+    const Kernel::Triangle_3 triangle(toPoint(positions[at(triangles[t][0])]),
+                                      toPoint(positions[at(triangles[t][1])]),
                                       toPoint(positions[at(triangles[t][2])]));
     if (triangle.is_degenerate()) continue;
     impl_->triangles.push_back(triangle);
@@ -68,7 +70,8 @@ SurfacePoint SurfaceTree::closest(const Vec3& query) const {
   return impl_->locate(found, point, (toVec(point) - query).norm());
 }
 
-std::optional<SurfacePoint> SurfaceTree::firstHit(const Vec3& origin, const Vec3& direction, double beyond) const {
+std::optional<SurfacePoint> SurfaceTree::firstHit(const Vec3& origin, const Vec3& direction,
+                                                  double beyond) const {
   const Vec3 unit = direction.normalized();
   const Kernel::Ray_3 ray(toPoint(origin), Kernel::Vector_3(unit.x(), unit.y(), unit.z()));
   std::vector<Tree::Intersection_and_primitive_id<Kernel::Ray_3>::Type> hits;
@@ -78,15 +81,17 @@ std::optional<SurfacePoint> SurfaceTree::firstHit(const Vec3& origin, const Vec3
     const auto* point = boost::get<Kernel::Point_3>(&where);
     if (point == nullptr) continue;  // the ray runs within the triangle's plane: its neighbours are hit too
     const double distance = (toVec(*point) - origin).dot(unit);
-    if (distance > beyond && (!best || distance < best->distance)) best = impl_->locate(found, *point, distance);
+    if (distance > beyond && (!best || distance < best->distance))
+      best = impl_->locate(found, *point, distance);
   }
   return best;
 }
 
 bool SurfaceTree::contains(const Vec3& query) const {
-  if ((query.array() <= impl_->box.low.array()).any() || (query.array() >= impl_->box.high.array()).any()) return false;
-  // Segments to points outside of the box, in fixed pseudo-random directions, until one meets no vertex, edge or
-  // coplanar triangle; then the parity of its crossings is exact.
+  if ((query.array() <= impl_->box.low.array()).any() || (query.array() >= impl_->box.high.array()).any())
+    return false;
+  // Segments to points outside of the box, in fixed pseudo-random directions, until one meets no vertex, edge
+  // or coplanar triangle; then the parity of its crossings is exact.
   const Kernel::Point_3 point = toPoint(query);
   Rng rng(0x5eed);
   const double reach = 2 * impl_->box.diagonal();
@@ -109,6 +114,21 @@ bool SurfaceTree::contains(const Vec3& query) const {
     if (clean) return crossed.size() % 2 == 1;
   }
   return false;  // on the surface: every segment from it meets a coplanar triangle
+}
+
+bool SurfaceTree::meets(const Vec3& a, const Vec3& b, const Vec3& c) const {
+  return impl_->tree.do_intersect(Kernel::Triangle_3(toPoint(a), toPoint(b), toPoint(c)));
+}
+
+std::vector<Index> SurfaceTree::meeting(const Vec3& a, const Vec3& b, const Vec3& c) const {
+  std::vector<Tree::Primitive_id> met;
+  impl_->tree.all_intersected_primitives(Kernel::Triangle_3(toPoint(a), toPoint(b), toPoint(c)),
+                                         std::back_inserter(met));
+  std::vector<Index> triangles;
+  for (const auto& id : met)
+    triangles.push_back(impl_->original[static_cast<std::size_t>(id - impl_->triangles.begin())]);
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
 }
 
 }  // namespace sherd

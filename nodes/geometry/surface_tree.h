@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "types/vec.h"
 
@@ -30,6 +31,10 @@ class SurfaceTree {
   std::optional<SurfacePoint> firstHit(const Vec3& origin, const Vec3& direction, double beyond = 0) const;
   /// Is the point strictly inside the closed surface (odd number of crossings)? Exact on the given doubles.
   bool contains(const Vec3& query) const;
+  /// Does the closed triangle abc meet the surface, even in a point? Exact on the given doubles.
+  bool meets(const Vec3& a, const Vec3& b, const Vec3& c) const;
+  /// The surface's triangles that it meets, ascending.
+  std::vector<Index> meeting(const Vec3& a, const Vec3& b, const Vec3& c) const;
 
  private:
   struct Impl;

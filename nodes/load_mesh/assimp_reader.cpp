@@ -95,7 +95,9 @@ class SceneReader {
       open.pop_back();
       const Transform transform = above * toTransform(node->mTransformation);
       for (unsigned i = 0; i < node->mNumMeshes; ++i) {
-        if (node->mMeshes[i] >= scene_.mNumMeshes) return failure("a node names a mesh that does not exist");
+        if (node->mMeshes[i] >= scene_.mNumMeshes)
+          return failure("a node names a mesh that does not exist",
+                         "the file may be damaged; export it again");
         SHERD_CHECK(append(*scene_.mMeshes[node->mMeshes[i]], transform));
       }
       for (unsigned i = node->mNumChildren; i > 0; --i) open.emplace_back(node->mChildren[i - 1], transform);

@@ -70,9 +70,11 @@ class ObjReader {
     for (std::string_view w = scan_.word(); !w.empty(); w = scan_.word(), ++count) {
       if (count == most) {
         return scan_.error(
-            std::string("more than ") + std::to_string(most) + " numbers behind '" + statement + "'", {});
+            std::string("more than ") + std::to_string(most) + " numbers behind '" + statement + "'",
+            "from " + std::to_string(least) + " to " + std::to_string(most) +
+                " are expected; the file may be damaged, export it again");
       }
-      if (!parseNumber(w, values[count])) return scan_.error(quoted(w) + " is not a number", {});
+      if (!parseNumber(w, values[count])) return scan_.error(quoted(w) + " is not a number", kNumberRemedy);
     }
     if (count >= least) return count;
     return scan_.error(std::string("'") + statement + "' has " + std::to_string(count) + " numbers where " +

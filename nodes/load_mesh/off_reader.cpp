@@ -42,7 +42,9 @@ class OffReader {
                          "OFF, COFF, NOFF or CNOFF");
     }
     if (keyword != "OFF")
-      return scan_.error("this is no OFF file", "it starts with OFF, COFF, NOFF or CNOFF");
+      return scan_.error("this is no OFF file",
+                         "one starts with OFF, COFF, NOFF or CNOFF; if this is another format, rename the "
+                         "file to its extension");
     std::string_view first = scan_.wordOnAnyLine();
     if (first == "BINARY") return scan_.error("binary OFF is not read", "save it as text, or as binary PLY");
     SHERD_CHECK(count(first, "vertices", vertexCount_));
@@ -65,7 +67,7 @@ class OffReader {
   std::string_view firstWord() { return scan_.wordOnAnyLine(); }
 
   Error wrongNumber(std::string_view word, const char* where) const {
-    if (!word.empty()) return scan_.error(quoted(word) + " is not a number", {});
+    if (!word.empty()) return scan_.error(quoted(word) + " is not a number", kNumberRemedy);
     return scan_.error(std::string("the file or the line ends within ") + where,
                        "the file may be cut off, or its counts may be wrong");
   }

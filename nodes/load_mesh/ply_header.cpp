@@ -30,7 +30,9 @@ class HeaderReader {
 
   Result<PlyHeader> read() {
     if (scan_.word() != "ply" || !scan_.word().empty()) {
-      return scan_.error("this is no PLY file", "its first line is 'ply'");
+      return scan_.error(
+          "this is no PLY file",
+          "the first line of one is 'ply'; if this is another format, rename the file to its extension");
     }
     bool hasFormat = false;
     for (scan_.nextLine(); !scan_.atEnd(); scan_.nextLine()) {
@@ -97,7 +99,9 @@ class HeaderReader {
   }
 
   Result<void> property() {
-    if (header_.elements.empty()) return scan_.error("a property before the first element", {});
+    if (header_.elements.empty())
+      return scan_.error("a property before the first element",
+                         "a line such as 'element vertex 8' goes before its properties");
     PlyHeader::Property property{{}, Type::Int8, false, Type::Uint8};
     std::string_view word = scan_.word();
     if (word == "list") {
@@ -110,7 +114,8 @@ class HeaderReader {
     }
     SHERD_CHECK(type(word, property.type));
     property.name = scan_.word();
-    if (property.name.empty()) return scan_.error("a property without a name", {});
+    if (property.name.empty())
+      return scan_.error("a property without a name", "a line such as 'property float x'");
     header_.elements.back().properties.push_back(std::move(property));
     return {};
   }

@@ -31,7 +31,7 @@ class AsciiBody {
   Error wrongValue() const {
     if (word_.empty())
       return failure(where() + "the file ends too early", "the file is cut off or its counts are wrong");
-    return failure(where() + quoted(word_) + " is not a number");
+    return failure(where() + quoted(word_) + " is not a number", kNumberRemedy);
   }
   std::string where() const { return "line " + std::to_string(firstLine_ + scan_.line() - 1) + ": "; }
 
@@ -163,7 +163,8 @@ class PlyReader {
       if (e.name == "vertex" && vertexElement_ == nullptr) vertexElement_ = &e;
       if (e.name == "face" && faceElement_ == nullptr) faceElement_ = &e;
     }
-    if (vertexElement_ == nullptr) return failure("the PLY header has no element 'vertex'");
+    if (vertexElement_ == nullptr)
+      return failure("the PLY header has no element 'vertex'", "export the model as a polygon mesh");
     if (faceElement_ == nullptr) {
       return failure("the PLY header has no element 'face'",
                      "export the model as a polygon mesh, not as points or strips");
@@ -173,13 +174,17 @@ class PlyReader {
       has_[slots_.back()] = true;
       full_[slots_.back()] = slots_.back() >= Red ? fullColor(p.type) : 1;
     }
-    if (!has_[X] || !has_[Y] || !has_[Z]) return failure("the PLY file's vertices lack x, y or z");
+    if (!has_[X] || !has_[Y] || !has_[Z])
+      return failure("the PLY file's vertices lack x, y or z",
+                     "export the vertices with their positions, as the properties x, y and z");
     for (const PlyHeader::Property& p : faceElement_->properties) {
       const bool indices = p.isList && (p.name == "vertex_indices" || p.name == "vertex_index");
       if (indices && indexList_ == nullptr) indexList_ = &p;
       if (p.isList && p.name == "texcoord" && uvList_ == nullptr) uvList_ = &p;
     }
-    if (indexList_ == nullptr) return failure("the PLY file's faces lack the list vertex_indices");
+    if (indexList_ == nullptr)
+      return failure("the PLY file's faces lack the list vertex_indices",
+                     "export the faces with a line such as 'property list uchar int vertex_indices'");
     return {};
   }
 

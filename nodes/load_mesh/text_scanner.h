@@ -124,6 +124,10 @@ inline bool parseInteger(std::string_view word, long long& value) {
   return status == std::errc{} && stop == end;
 }
 
+/// What to do about a word that should be a number.
+inline constexpr const char* kNumberRemedy =
+    "a number such as 1.5 or 2e-3 is expected; the file may be damaged, export it again";
+
 /// A word of the file for a message: in quotes, shortened, control characters and non-ASCII bytes as '?'.
 inline std::string quoted(std::string_view word) {
   std::string text = "'";

@@ -72,7 +72,7 @@ Result<Sites> predictDegree(const WeightField& weights, const Embedding& embeddi
     exec.progress(static_cast<double>(lloyd.siteCount()) / static_cast<double>(most));
   }
   report(params, lloyd.siteCount(), energy, exhausted, exec);
-  return Sites{lloyd.sites(), energy, given ? 0.0 : params.gamma};
+  return Sites{lloyd.sites(), energy, given ? 0.0 : params.gamma, given};
 }
 
 }  // namespace sherd

@@ -22,10 +22,10 @@ struct PredictDegreeParams {
   int maxDegree = 1000;  ///< ≥ 1, of the search by γ
 };
 
-/// Sites p̄_j (m, in the embedding), E_D and γ (0 where the degree was given). Says the outcome; warns where
-/// `maxDegree`, or the number of distinct nodes (that weigh), ends the search before γ is reached.
-/// Errors: those of cvd (sizes, finiteness), parameters out of range.
-/// Cost: that of N runs of Lloyd's iteration from nearly converged sites.
+/// Sites p̄_j (m, in the embedding), E_D and γ, or 0 and `degreeGiven`. γ = 0 itself asks for every site there
+/// can be. Says the outcome; warns where `maxDegree`, or the number of distinct nodes (that weigh), ends the
+/// search before γ is reached. Errors: those of cvd (sizes, finiteness), parameters out of range. Cost: that
+/// of N runs of Lloyd's iteration from nearly converged sites.
 Result<Sites> predictDegree(const WeightField& weights, const Embedding& embedding,
                             const PredictDegreeParams& params, const Exec& exec);
 

@@ -1,24 +1,37 @@
 #include "rigid/rigid.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <optional>
 #include <string>
 
 #include "geometry/solid.h"
 #include "rigid/contact_solver.h"
 #include "rigid/flight.h"
 #include "rigid/hertz.h"
+#include "rigid/miss.h"
 #include "rigid/time_of_impact.h"
 
 namespace sherd {
 namespace {
 
-constexpr double kFastestSpin = 1e4;  // rad/s
+constexpr double kFastestSpin = 1e4;        // rad/s
+constexpr double kLargestMassRatio = 1e18;  // beyond, the lighter one changes no digit of the other's motion
+
+Error outside(const char* parameter, const std::string& value, const char* range) {
+  return Error{std::string(parameter) + " is " + value, std::string("must be ") + range, parameter,
+               Error::Kind::Input};
+}
 
 Error outside(const char* parameter, double value, const char* range) {
-  return Error{std::string(parameter) + " is " + std::to_string(value), std::string("must be ") + range,
-               parameter, Error::Kind::Input};
+  return outside(parameter, fmt::format("{:.6g}", value), range);
+}
+
+Error outside(const char* parameter, const Vec3& value, const char* range) {
+  return outside(parameter, fmt::format("({:.6g}, {:.6g}, {:.6g})", value.x(), value.y(), value.z()), range);
 }
 
 /// Written so that NaN fails every test.
@@ -41,10 +54,10 @@ Result<void> checkParams(const RigidParams& p) {
   if (!notNegative(p.contactRadius)) return outside("contact_radius", p.contactRadius, "0 or above");
   if (!positive(p.timeStep)) return outside("time_step", p.timeStep, "above 0");
   if (!positive(p.maxTime)) return outside("max_time", p.maxTime, "above 0");
-  if (!p.orientation.allFinite()) return outside("orientation", NAN, "finite");
-  if (!p.velocity.allFinite()) return outside("velocity", NAN, "finite");
+  if (!p.orientation.allFinite()) return outside("orientation", p.orientation, "finite");
+  if (!p.velocity.allFinite()) return outside("velocity", p.velocity, "finite");
   if (!(p.angularVelocity.norm() <= kFastestSpin))
-    return outside("angular_velocity", p.angularVelocity.norm(), "at most 10000 rad/s long");
+    return outside("angular_velocity", p.angularVelocity, "at most 10000 rad/s long");
   return {};
 }
 
@@ -54,8 +67,8 @@ Result<void> checkBall(const RigidParams& p) {
   if (!positive(p.ballDensity)) return outside("ball_density", p.ballDensity, "above 0");
   if (!positive(p.ballSpeed)) return outside("ball_speed", p.ballSpeed, "above 0");
   if (!p.ballDirection.allFinite() || !(p.ballDirection.norm() > 0))
-    return outside("ball_direction", p.ballDirection.norm(), "a vector of some length");
-  if (!p.ballTarget.allFinite()) return outside("ball_target", NAN, "finite");
+    return outside("ball_direction", p.ballDirection, "a finite vector of some length");
+  if (!p.ballTarget.allFinite()) return outside("ball_target", p.ballTarget, "finite");
   if (p.standing && !(p.velocity.isZero(0) && p.angularVelocity.isZero(0)))
     return Error{"the body is to stand on the floor, but moves",
                  "set velocity and angular_velocity to 0, or standing to false", "standing",
@@ -69,10 +82,15 @@ Result<RigidBody> rigidBody(const TetMesh& mesh, const SolidIntegrals& solid, do
   const std::vector<Vec3>& vertices = mesh.surface->positions;
   const double tiny = 1e-12 * std::pow(boxOf(vertices).diagonal(), 3);
   if (!(solid.volume > tiny) || !std::isfinite(solid.volume))
-    return failure("the body's surface encloses no volume (" + std::to_string(solid.volume) + " m³)",
+    return failure("the body's surface encloses no volume (" + fmt::format("{:.3g}", solid.volume) + " m³)",
                    "it must be closed and its triangles face outwards");
   body.mass = density * solid.volume;
   body.inertia = solid.inertia(density);
+  const double determinant = body.inertia.determinant();  // its inverse is what moves the body
+  if (!std::isnormal(determinant))
+    return Error{fmt::format("the body's mass, {:.3g} kg, is too {} to compute with", body.mass,
+                             body.mass < 1 ? "small" : "large"),
+                 "give its density in kg/m³ (2400 is concrete, 2500 glass)", "density", Error::Kind::Input};
   body.centreOfMass = solid.centroid;
   for (const Vec3& v : vertices)
     if (!v.allFinite()) return failure("the body's surface has vertices that are not finite numbers");
@@ -122,9 +140,9 @@ Ball thrownBall(const Box& target, const RigidBody& body, const RigidMotion& mot
   const Vec3 direction = params.ballDirection.normalized();
   ball.velocity = params.ballSpeed * direction;
   const Vec3 aim = target.low + (target.high - target.low).cwiseProduct(params.ballTarget);
-  // Just outside of the body's sphere, so that no time goes by on empty flight.
+  // Just outside of the body's sphere, so that no time goes by on empty flight, however large the ball is.
   const double back = body.radius + ball.radius + (aim - motion.position).norm();
-  ball.start = aim - 1.01 * back * direction;
+  ball.start = aim - (back + 0.01 * body.radius) * direction;
   return ball;
 }
 
@@ -140,20 +158,55 @@ RigidMotion afterImpulses(const Flight& flight, const std::vector<Touch>& touche
   return after;
 }
 
+/// Is there anything to deform the body with?
+Result<void> checkImpulses(const Impact& impact, const RigidBody& body, const std::optional<Ball>& ball) {
+  double sum = 0;
+  for (const Contact& contact : impact.contacts) sum += contact.impulse.norm();
+  if (std::isnormal(sum)) return {};
+  if (!ball)
+    return Error{
+        fmt::format("the floor hits the body ({:.3g} kg) without an impulse ({:.3g} N·s)", body.mass, sum),
+        "give its density in kg/m³, and a fall of some height", "density", Error::Kind::Input};
+  const bool light = ball->mass < body.mass;
+  return Error{fmt::format("the ball ({:.3g} kg) hits the body ({:.3g} kg) without an impulse ({:.3g} N·s)",
+                           ball->mass, body.mass, sum),
+               light ? "raise ball_density or ball_radius" : "raise the body's density",
+               light ? "ball_density" : "density", Error::Kind::Input};
+}
+
 /// Contact duration and patch radius: the given ones, or Hertz's.
-void setPatch(Impact& impact, const ContactImpulses& solved, const RigidBody& body, double volume,
-              const RigidParams& params) {
+Result<void> setPatch(Impact& impact, const ContactImpulses& solved, const RigidBody& body, double volume,
+                      const RigidParams& params, const Exec& exec) {
   double curvature = std::cbrt(4.0 / 3.0 * M_PI / volume);
   if (params.scene == RigidScene::Ball) curvature += 1 / params.ballRadius;
   const double mass = solved.normalImpulse / ((1 + params.restitution) * solved.closingSpeed);
   const HertzImpact hertz =
       hertzImpact(mass, solved.closingSpeed, 1 / curvature,
                   contactModulus(params.body, params.obstacleYoung, params.obstaclePoisson));
-  for (Contact& contact : impact.contacts) {
-    contact.duration = params.contactDuration > 0 ? params.contactDuration : hertz.duration;
-    contact.radius =
-        params.contactRadius > 0 ? params.contactRadius : std::max(hertz.radius, kSmallestPatch * body.size);
+  const bool givenRadius = params.contactRadius > 0;
+  const double duration = params.contactDuration > 0 ? params.contactDuration : hertz.duration;
+  double radius = givenRadius ? params.contactRadius : std::max(hertz.radius, kSmallestPatch * body.size);
+  const char* softer = params.body.youngModulus <= params.obstacleYoung ? "young" : "obstacle_young";
+  const auto positive = [](double v) { return v > 0 && std::isfinite(v); };
+  if (!positive(duration) || !positive(radius))
+    return Error{fmt::format("Hertz's contact would last {:.3g} s and have a radius of {:.3g} m",
+                             hertz.duration, hertz.radius),
+                 "check young, obstacle_young and density, or give contact_duration and contact_radius",
+                 softer, Error::Kind::Input};
+  if (radius > body.size) {
+    exec.warn(fmt::format(
+        "the contact's radius, {:.3g} m, is larger than the body, whose size of {:.3g} m is taken; {}",
+        radius, body.size,
+        givenRadius
+            ? "lower contact_radius"
+            : "check young, obstacle_young and density, or give contact_duration and contact_radius"));
+    radius = body.size;
   }
+  for (Contact& contact : impact.contacts) {
+    contact.duration = duration;
+    contact.radius = radius;
+  }
+  return {};
 }
 
 /// Flies on to the impact; true where there is one, with the places that touch.
@@ -173,14 +226,49 @@ bool fly(Flight& flight, const std::optional<Ball>& ball, const TriMesh& surface
   return true;
 }
 
-Result<Impact> firstImpact(const TetMesh& mesh, const RigidParams& params, const Exec& exec) {
-  const SolidIntegrals solid = integrateSolid(mesh.surface->positions, mesh.surface->triangles);
-  SHERD_ASSIGN(const RigidBody body, rigidBody(mesh, solid, params.body.density));
-  const RigidMotion start = release(mesh, body, params);
-  const bool thrown = params.scene == RigidScene::Ball;
+/// Everything at the release.
+struct Scene {
+  RigidBody body;
+  double volume = 0;  ///< m³
+  RigidMotion start;
+  double gravity = 0;
   std::optional<Ball> ball;
-  if (thrown) ball = thrownBall(turnedBox(mesh, body, start), body, start, params);
-  Flight flight(body, start, thrown ? 0.0 : params.gravity, params.timeStep);
+};
+
+Result<Scene> setUp(const TetMesh& mesh, const RigidParams& params) {
+  SHERD_CHECK(checkParams(params));
+  if (params.scene == RigidScene::Ball) SHERD_CHECK(checkBall(params));
+  if (mesh.surface == nullptr) return failure("the body has no surface");
+  const SolidIntegrals solid = integrateSolid(mesh.surface->positions, mesh.surface->triangles);
+  Scene scene;
+  scene.volume = solid.volume;
+  SHERD_ASSIGN(scene.body, rigidBody(mesh, solid, params.body.density));
+  scene.start = release(mesh, scene.body, params);
+  if (params.scene == RigidScene::Floor) {
+    scene.gravity = params.gravity;
+    return scene;
+  }
+  if (!(params.ballRadius >= kSmallestBall * scene.body.size))
+    return Error{
+        fmt::format("the ball is too small for the body: its radius is {:.3g} m, the body's size {:.3g} m",
+                    params.ballRadius, scene.body.size),
+        fmt::format("raise ball_radius to {:.3g} m at least", kSmallestBall * scene.body.size), "ball_radius",
+        Error::Kind::Input};
+  scene.ball = thrownBall(turnedBox(mesh, scene.body, scene.start), scene.body, scene.start, params);
+  const double share = scene.ball->mass / scene.body.mass;
+  if (!(share >= 1 / kLargestMassRatio && share <= kLargestMassRatio))
+    return Error{fmt::format("the ball's mass, {:.3g} kg, is too {} for the body's, {:.3g} kg",
+                             scene.ball->mass, share < 1 ? "small" : "large", scene.body.mass),
+                 "give the density of both in kg/m³ (steel is 7800, concrete 2400), or change ball_radius",
+                 "ball_density", Error::Kind::Input};
+  return scene;
+}
+
+Result<Impact> firstImpact(const TetMesh& mesh, const RigidParams& params, const Exec& exec) {
+  SHERD_ASSIGN(const Scene scene, setUp(mesh, params));
+  const RigidBody& body = scene.body;
+  const std::optional<Ball>& ball = scene.ball;
+  Flight flight(body, scene.start, scene.gravity, params.timeStep);
 
   Impact impact;
   std::vector<Touch> touches;
@@ -196,18 +284,29 @@ Result<Impact> firstImpact(const TetMesh& mesh, const RigidParams& params, const
   for (std::size_t i = 0; i < touches.size(); ++i)
     if (!solved.onBody[i].isZero(0))
       impact.contacts.push_back({touches[i].rest, toRest * solved.onBody[i], 0, 0});
-  setPatch(impact, solved, body, solid.volume, params);
+  SHERD_CHECK(checkImpulses(impact, body, ball));
+  SHERD_CHECK(setPatch(impact, solved, body, scene.volume, params, exec));
   return impact;
 }
 
 }  // namespace
 
 Result<Impact> dropUntilImpact(const TetMesh& body, const RigidParams& params, const Exec& exec) {
-  SHERD_CHECK(checkParams(params));
-  if (params.scene == RigidScene::Ball) SHERD_CHECK(checkBall(params));
-  if (body.surface == nullptr) return failure("the body has no surface");
   try {
     return firstImpact(body, params, exec);
+  } catch (const std::exception& error) {
+    return failure(std::string("moving the body failed: ") + error.what());
+  }
+}
+
+Error whyNoImpact(const TetMesh& body, const RigidParams& params) {
+  try {
+    const Result<Scene> scene = setUp(body, params);
+    if (!scene.ok()) return scene.error();
+    const Flight flight(scene->body, scene->start, scene->gravity, params.timeStep);
+    if (!scene->ball) return whyNotOnFloor(flight, params);
+    const SurfaceTree tree(body.surface->positions, body.surface->triangles);
+    return whyNotByBall(flight, *scene->ball, tree, params);
   } catch (const std::exception& error) {
     return failure(std::string("moving the body failed: ") + error.what());
   }

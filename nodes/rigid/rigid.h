@@ -64,6 +64,12 @@ struct RigidParams {
 /// contact patch would be a point load, whose energy grows without bound as the mesh gets finer.
 inline constexpr double kSmallestPatch = 0.03;
 
+/// Share of the body's size below which a ball's radius drowns in the precision with which a touch is found.
+inline constexpr double kSmallestBall = 1e-6;
+
+/// s: the most that waiting for an impact is worth; a node's max_time ends there.
+inline constexpr double kLongestWait = 1e4;
+
 /// Peak force over mean force, J / T, of Hertz's impact: F_max T / (2 m v) with F_max = 5/4 m v²/δ,
 /// T = 2.94 δ/v.
 inline constexpr double kHertzPeak = 1.84;
@@ -80,9 +86,16 @@ inline constexpr double kHertzPeak = 1.84;
 /// the material pair, the body as the sphere of its volume (the curvature of a triangle mesh at a vertex is a
 /// property of the meshing): with m* = ΣJ_n / ((1 + e) v) the mass behind the contacts,
 ///   δ = (15 m* v² / (16 √R E*))^(2/5),   a = √(R δ),   T = 2.94 δ / v.
+/// A patch, given or Hertz's, is no larger than the body's size: a larger one is cut to that, with a warning.
 ///
-/// Errors: a parameter outside its range; a surface without volume; cancelled.
+/// Errors: a parameter outside its range; a surface without volume; a mass, impulse, duration or radius that
+/// is no positive finite number, by the name of the parameter it comes from; a ball too small or too light;
+/// cancelled.
 /// Cost O(vertices) per step near the floor, O(log triangles) per step near the ball: some tens of steps.
 Result<Impact> dropUntilImpact(const TetMesh& body, const RigidParams& params, const Exec& exec);
+
+/// What keeps the body from being hit where dropUntilImpact returns hit = false for the same arguments: by
+/// the name of the parameter to change, and with how far or how long it falls short (rigid/miss.h).
+Error whyNoImpact(const TetMesh& body, const RigidParams& params);
 
 }  // namespace sherd

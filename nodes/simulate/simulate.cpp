@@ -39,7 +39,7 @@ Result<void> deform(EnergyField& field, const Impact& impact, const Exec& exec) 
   field.displacement = std::move(solution.displacement);
   if (!std::isfinite(totalEnergy(field)))
     return failure("the strain energy is not a finite number",
-                   "check the body's tetrahedra and the impact's speed");
+                   "check young, the body's tetrahedra and the impact's speed");
   return {};
 }
 
@@ -53,11 +53,8 @@ Result<SimulateOutput> run(std::shared_ptr<const TetMesh> mesh, const SimulatePa
                            const Exec& exec) {
   SimulateOutput out;
   SHERD_ASSIGN(out.impact, dropUntilImpact(*mesh, params, exec));
+  if (!out.impact.hit) return whyNoImpact(*mesh, params);
   out.energy = withoutEnergy(std::move(mesh), params.body);
-  if (!out.impact.hit) {
-    exec.warn(formatted("nothing is hit within %.4g s: no strain energy", params.maxTime));
-    return out;
-  }
   const double impulse = totalImpulse(out.impact);
   const std::string hit =
       formatted("hit after %.4g s at %zu contact%s, %.4g N·s in %.3g s", out.impact.time,

@@ -25,15 +25,15 @@ struct SimulateParams : RigidParams {
 };
 
 struct SimulateOutput {
-  EnergyField energy;  ///< material is params.body; all zero without a hit, or with one below the threshold
+  EnergyField energy;  ///< material is params.body; all zero with a hit below the threshold
   Impact impact;
 };
 
 /// mesh: the body, its tetrahedra enclosing its surface. Bit-identical for any number of threads. Says
-/// to the user: what was hit and how much energy it gave; that nothing was hit (warning) or that the hit
-/// is below the threshold. In both cases statics are skipped. Errors: those of dropUntilImpact,
-/// Statics::factor and PatchLoader::add. Cost: the factorization, O(nodes²) at most and most of the
-/// time; O(triangles) per contact.
+/// to the user: what was hit and how much energy it gave, or that the hit is below the threshold: then
+/// statics are skipped. Errors: nothing is hit, by the parameter to change (whyNoImpact); those of
+/// dropUntilImpact, Statics::factor and PatchLoader::add. Cost: the factorization, O(nodes²) at most and most
+/// of the time; O(triangles) per contact.
 Result<SimulateOutput> simulate(std::shared_ptr<const TetMesh> mesh, const SimulateParams& params,
                                 const Exec& exec);
 

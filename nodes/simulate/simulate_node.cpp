@@ -123,7 +123,11 @@ void addContact(Builder& node) {
   node.number("time_step", &Params::timeStep,
               {.unit = "s", .min = 1e-6, .max = 1, .help = "longest step of the flight's rotation"});
   node.number("max_time", &Params::maxTime,
-              {.unit = "s", .min = 0, .max = 1e4, .openMin = true, .help = "how long to wait for an impact"});
+              {.unit = "s",
+               .min = 0,
+               .max = kLongestWait,
+               .openMin = true,
+               .help = "how long to wait for an impact"});
   node.number("threshold", &Params::threshold,
               {.unit = "N·s", .min = 0, .help = "a hit with less impulse than this deforms nothing"});
 }

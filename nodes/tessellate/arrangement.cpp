@@ -23,7 +23,8 @@ Error inconsistent(const char* what) {
 /// Finds which edges cross which triangles, then works out all that follows.
 class Arranger {
  public:
-  Arranger(const TetMesh& tets, std::span<const Index> nodeLabel, const CrackComplex& complex, const Exec& exec)
+  Arranger(const TetMesh& tets, std::span<const Index> nodeLabel, const CrackComplex& complex,
+           const Exec& exec)
       : tets_(tets), nodeLabel_(nodeLabel), complex_(complex), exec_(exec) {}
 
   Result<Arrangement> run() {
@@ -55,7 +56,8 @@ class Arranger {
     a_.positions.insert(a_.positions.end(), complex_.vertices.begin(), complex_.vertices.end());
     for (const CrackTriangle& c : complex_.triangles) {
       ownCrack_.push_back(c.corners);
-      a_.crack.push_back({c.corners[0] + a_.firstCrack, c.corners[1] + a_.firstCrack, c.corners[2] + a_.firstCrack});
+      a_.crack.push_back(
+          {c.corners[0] + a_.firstCrack, c.corners[1] + a_.firstCrack, c.corners[2] + a_.firstCrack});
     }
     a_.surfaceEdges = buildEdgeTable(surface.triangles, surface.positions.size());
     a_.crackEdges = buildEdgeTable(ownCrack_, complex_.vertices.size());
@@ -108,7 +110,8 @@ class Arranger {
     }
   }
 
-  // What lies on the two sides of a crossed triangle: cells for a sheet, inside (0) and outside (1) for the surface.
+  // What lies on the two sides of a crossed triangle: cells for a sheet, inside (0) and outside (1) for the
+  // surface.
   std::array<Index, 2> cellsAcross(const Crossing& x) const {
     const CrackTriangle& c = complex_.triangles[at(x.triangle)];
     return x.fromFront ? std::array{c.front, c.back} : std::array{c.back, c.front};
@@ -117,11 +120,11 @@ class Arranger {
     return x.fromFront ? std::array<Index, 2>{1, 0} : std::array<Index, 2>{0, 1};
   }
 
-  /// Sorts crossings along their edges. Crossings at the very same point are put in an order in which each leaves
-  /// the region where the next begins.
+  /// Sorts crossings along their edges. Crossings at the very same point are put in an order in which each
+  /// leaves the region where the next begins.
   template <class Ends, class Across>
-  bool orderAlong(EdgeCrossings& crossings, std::size_t edgeCount, std::span<const Triangle> triangles, Ends ends,
-                  Across across) {
+  bool orderAlong(EdgeCrossings& crossings, std::size_t edgeCount, std::span<const Triangle> triangles,
+                  Ends ends, Across across) {
     const ExactPoints points(a_.positions);
     auto& list = crossings.list;
     crossings.begin.assign(edgeCount + 1, 0);
@@ -137,7 +140,8 @@ class Arranger {
       const auto order = [&, p = p, q = q](const Crossing& x, const Crossing& y) {
         return points.compareCrossings(p, q, triangles[at(x.triangle)], triangles[at(y.triangle)]) < 0;
       };
-      std::stable_sort(list.begin() + static_cast<std::ptrdiff_t>(first), list.begin() + static_cast<std::ptrdiff_t>(last), order);
+      std::stable_sort(list.begin() + static_cast<std::ptrdiff_t>(first),
+                       list.begin() + static_cast<std::ptrdiff_t>(last), order);
       consistent = chain(std::span(list).subspan(first, last - first), order, across) && consistent;
       first = last;
     }
@@ -148,7 +152,8 @@ class Arranger {
   static bool chain(std::span<Crossing> run, Order order, Across across) {
     auto follows = [&](const Crossing& x, const Crossing& y) { return across(x)[1] == across(y)[0]; };
     for (std::size_t i = 0; i + 1 < run.size(); ++i) {
-      if (i > 0 ? follows(run[i - 1], run[i]) : follows(run[i], run[i + 1]) || order(run[i], run[i + 1])) continue;
+      if (i > 0 ? follows(run[i - 1], run[i]) : follows(run[i], run[i + 1]) || order(run[i], run[i + 1]))
+        continue;
       // Among those tied with this one, take the first that continues the chain.
       std::size_t end = i + 1;
       while (end < run.size() && !order(run[i], run[end])) ++end;
@@ -167,11 +172,12 @@ class Arranger {
   }
 
   Result<void> orderCrossings() {
-    const bool surfaceFits =
-        orderAlong(a_.surfaceCrossings, a_.surfaceEdges.ends.size(), a_.crack, [this](Index e) { return surfaceEnds(e); },
-                   [this](const Crossing& x) { return cellsAcross(x); });
-    const bool crackFits = orderAlong(a_.crackCrossings, a_.crackEdges.ends.size(), a_.surface,
-                                      [this](Index e) { return crackEnds(e); }, sidesAcross);
+    const bool surfaceFits = orderAlong(
+        a_.surfaceCrossings, a_.surfaceEdges.ends.size(), a_.crack,
+        [this](Index e) { return surfaceEnds(e); }, [this](const Crossing& x) { return cellsAcross(x); });
+    const bool crackFits = orderAlong(
+        a_.crackCrossings, a_.crackEdges.ends.size(), a_.surface, [this](Index e) { return crackEnds(e); },
+        sidesAcross);
     if (!surfaceFits) return inconsistent("cells do not follow each other along an edge of the surface");
     if (!crackFits) return inconsistent("inside and outside do not alternate along an edge of a sheet");
     return {};
@@ -198,8 +204,8 @@ class Arranger {
 
   /// Spreads what is known at the ends of crossed edges over the uncrossed ones. -1 where nothing is known.
   template <class Across>
-  static bool spread(const EdgeTable& edges, const EdgeCrossings& crossings, std::size_t vertices, Across across,
-                     std::vector<Index>& known, DisjointSets& sets) {
+  static bool spread(const EdgeTable& edges, const EdgeCrossings& crossings, std::size_t vertices,
+                     Across across, std::vector<Index>& known, DisjointSets& sets) {
     for (std::size_t e = 0; e < edges.ends.size(); ++e)
       if (crossings.on(static_cast<Index>(e)).empty()) sets.join(at(edges.ends[e][0]), at(edges.ends[e][1]));
     std::vector<Index> ofRoot(vertices, -1);
@@ -223,8 +229,9 @@ class Arranger {
   Result<void> labelSurface() {
     const std::size_t n = tets_.surface->positions.size();
     DisjointSets sets(n);
-    if (!spread(a_.surfaceEdges, a_.surfaceCrossings, n, [this](const Crossing& x) { return cellsAcross(x); },
-                a_.surfaceLabel, sets))
+    if (!spread(
+            a_.surfaceEdges, a_.surfaceCrossings, n, [this](const Crossing& x) { return cellsAcross(x); },
+            a_.surfaceLabel, sets))
       return inconsistent("a part of the surface lies in two cells");
     // Parts of the surface that no sheet crosses: one vertex of each is located in the tetrahedra.
     std::vector<Index> missing(n, -1);
@@ -238,8 +245,8 @@ class Arranger {
     return {};
   }
 
-  /// The cell of a surface vertex, found in the tetrahedron that holds it: the first sheet met on the way to one of
-  /// its nodes, or that node's own cell.
+  /// The cell of a surface vertex, found in the tetrahedron that holds it: the first sheet met on the way to
+  /// one of its nodes, or that node's own cell.
   Index locate(Index vertex) {
     // The tetrahedra's nodes and crack vertices are numbered behind the surface's, as in `positions`.
     std::vector<Vec3> all(a_.positions.begin(), a_.positions.begin() + a_.firstNew);
@@ -256,8 +263,9 @@ class Arranger {
       if ((p.array() < box.low.array()).any() || (p.array() > box.high.array()).any()) continue;
       bool inside = true;
       for (const auto& f : kTetraFace)
-        inside = inside && points.orientation(tet[static_cast<std::size_t>(f[0])], tet[static_cast<std::size_t>(f[1])],
-                                              tet[static_cast<std::size_t>(f[2])], vertex) < 0;
+        inside = inside &&
+                 points.orientation(tet[static_cast<std::size_t>(f[0])], tet[static_cast<std::size_t>(f[1])],
+                                    tet[static_cast<std::size_t>(f[2])], vertex) < 0;
       if (inside) return cellTowards(points, vertex, tet[0], static_cast<Index>(t));
     }
     return -1;
@@ -306,22 +314,26 @@ class Arranger {
     bool starts;
   };
 
-  /// Each crossing is an end of the segments of all triangles around its edge. On the surface triangle the segment
-  /// has the back cell on its left, so it starts where the border, counter-clockwise, passes from back to front.
+  /// Each crossing is an end of the segments of all triangles around its edge. On the surface triangle the
+  /// segment has the back cell on its left, so it starts where the border, counter-clockwise, passes from
+  /// back to front.
   Result<void> pairSegments() {
     std::vector<End> ends;
     for (const Crossing& x : a_.surfaceCrossings.list)
       for (const Index s : a_.surfaceEdges.trianglesOf(x.edge))
-        ends.push_back({s, x.triangle, x.vertex, runsForward(a_.surfaceEdges, a_.surface, s, x.edge) != x.fromFront});
+        ends.push_back(
+            {s, x.triangle, x.vertex, runsForward(a_.surfaceEdges, a_.surface, s, x.edge) != x.fromFront});
     for (const Crossing& x : a_.crackCrossings.list)
       for (const Index c : a_.crackEdges.trianglesOf(x.edge))
-        ends.push_back({x.triangle, c, x.vertex, runsForward(a_.crackEdges, ownCrack_, c, x.edge) == x.fromFront});
+        ends.push_back(
+            {x.triangle, c, x.vertex, runsForward(a_.crackEdges, ownCrack_, c, x.edge) == x.fromFront});
     std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) {
-      return std::tuple(a.surface, a.crack, !a.starts, a.vertex) < std::tuple(b.surface, b.crack, !b.starts, b.vertex);
+      return std::tuple(a.surface, a.crack, !a.starts, a.vertex) <
+             std::tuple(b.surface, b.crack, !b.starts, b.vertex);
     });
     for (std::size_t i = 0; i < ends.size(); i += 2) {
-      if (i + 1 >= ends.size() || ends[i].surface != ends[i + 1].surface || ends[i].crack != ends[i + 1].crack ||
-          !ends[i].starts || ends[i + 1].starts)
+      if (i + 1 >= ends.size() || ends[i].surface != ends[i + 1].surface ||
+          ends[i].crack != ends[i + 1].crack || !ends[i].starts || ends[i + 1].starts)
         return inconsistent("two triangles meet in something else than a segment");
       a_.segments.push_back({ends[i].surface, ends[i].crack, ends[i].vertex, ends[i + 1].vertex});
     }
@@ -338,7 +350,9 @@ class Arranger {
   void findEqualPositions() {
     std::vector<Index> involved;
     for (Index v = a_.firstCrack; at(v) < a_.positions.size(); ++v) involved.push_back(v);
-    auto corners = [&](Index s) { involved.insert(involved.end(), a_.surface[at(s)].begin(), a_.surface[at(s)].end()); };
+    auto corners = [&](Index s) {
+      involved.insert(involved.end(), a_.surface[at(s)].begin(), a_.surface[at(s)].end());
+    };
     for (const Crossing& x : a_.surfaceCrossings.list)
       for (const Index s : a_.surfaceEdges.trianglesOf(x.edge)) corners(s);
     for (const Crossing& x : a_.crackCrossings.list) corners(x.triangle);
@@ -364,8 +378,8 @@ class Arranger {
 
 }  // namespace
 
-Result<Arrangement> arrange(const TetMesh& tets, std::span<const Index> nodeLabel, const CrackComplex& complex,
-                            const Exec& exec) {
+Result<Arrangement> arrange(const TetMesh& tets, std::span<const Index> nodeLabel,
+                            const CrackComplex& complex, const Exec& exec) {
   return Arranger(tets, nodeLabel, complex, exec).run();
 }
 

@@ -1,6 +1,6 @@
-// How the surface and the sheets cut each other: crossings, their order along edges, and the segments they bound.
-// Decided by exact predicates under Simulation of Simplicity, so that every pair of triangles that meets does so in
-// one segment with two ends; nothing here depends on a rounded coordinate.
+// How the surface and the sheets cut each other: crossings, their order along edges, and the segments they
+// bound. Decided by exact predicates under Simulation of Simplicity, so that every pair of triangles that
+// meets does so in one segment with two ends; nothing here depends on a rounded coordinate.
 #pragma once
 
 #include <array>
@@ -17,14 +17,14 @@ namespace sherd {
 
 /// An edge of one mesh through a triangle of the other.
 struct Crossing {
-  Index edge;       ///< in its own mesh's EdgeTable
-  Index triangle;   ///< in the other mesh
-  bool fromFront;   ///< the edge's lower end lies in front of the triangle
-  Index vertex;     ///< its number in Arrangement::positions
+  Index edge;      ///< in its own mesh's EdgeTable
+  Index triangle;  ///< in the other mesh
+  bool fromFront;  ///< the edge's lower end lies in front of the triangle
+  Index vertex;    ///< its number in Arrangement::positions
 };
 
-/// The segment in which a surface triangle and a crack triangle meet, directed so that on the surface (seen from
-/// outside) the crack triangle's back cell lies on its left.
+/// The segment in which a surface triangle and a crack triangle meet, directed so that on the surface (seen
+/// from outside) the crack triangle's back cell lies on its left.
 struct Segment {
   Index surface, crack;  ///< triangles
   Index from, to;        ///< vertices
@@ -39,23 +39,25 @@ struct EdgeCrossings {
   }
 };
 
-/// Vertex numbers: the surface's vertices, then the sheets' (from firstCrack), then the crossings (from firstNew).
+/// Vertex numbers: the surface's vertices, then the sheets' (from firstCrack), then the crossings (from
+/// firstNew).
 struct Arrangement {
   std::span<const Triangle> surface;
-  std::vector<Triangle> crack;       ///< the sheets' triangles with their numbers shifted by firstCrack
+  std::vector<Triangle> crack;  ///< the sheets' triangles with their numbers shifted by firstCrack
   std::vector<Vec3> positions;
   Index firstCrack = 0, firstNew = 0;
-  std::vector<Index> same;           ///< per vertex: the least-numbered one that rounding put on the same spot
-  EdgeTable surfaceEdges, crackEdges;   ///< crackEdges' ends are unshifted numbers of the complex
+  std::vector<Index> same;  ///< per vertex: the least-numbered one that rounding put on the same spot
+  EdgeTable surfaceEdges, crackEdges;  ///< crackEdges' ends are unshifted numbers of the complex
   EdgeCrossings surfaceCrossings, crackCrossings;
-  std::vector<Segment> segments;          ///< by (surface, crack)
-  std::vector<Index> surfaceLabel;      ///< per surface vertex: the cell that it lies in
-  std::vector<bool> crackInside;        ///< per crack vertex: lies inside of the surface
+  std::vector<Segment> segments;    ///< by (surface, crack)
+  std::vector<Index> surfaceLabel;  ///< per surface vertex: the cell that it lies in
+  std::vector<bool> crackInside;    ///< per crack vertex: lies inside of the surface
 };
 
-/// `tets.surface` is closed, coherently oriented and free of self-intersections. Error where the pairing of ends does
-/// not come out even, which a surface that is not so can cause. Cost O(surface) for its edges plus O(candidate pairs).
-Result<Arrangement> arrange(const TetMesh& tets, std::span<const Index> nodeLabel, const CrackComplex& complex,
-                            const Exec& exec);
+/// `tets.surface` is closed, coherently oriented and free of self-intersections. Error where the pairing of
+/// ends does not come out even, which a surface that is not so can cause. Cost O(surface) for its edges plus
+/// O(candidate pairs).
+Result<Arrangement> arrange(const TetMesh& tets, std::span<const Index> nodeLabel,
+                            const CrackComplex& complex, const Exec& exec);
 
 }  // namespace sherd

@@ -77,8 +77,8 @@ class CutTriangle {
     return static_cast<Index>(std::find(ids_.begin(), ids_.end(), same_[at(vertex)]) - ids_.begin());
   }
 
-  /// In one region a vertex begins at most one half-edge, since the cells around a crack edge all differ. Followed by
-  /// the vertices' own numbers; only then are those on one spot taken together.
+  /// In one region a vertex begins at most one half-edge, since the cells around a crack edge all differ.
+  /// Followed by the vertices' own numbers; only then are those on one spot taken together.
   void traceLoops(std::span<const HalfEdge> region, std::vector<std::vector<Index>>& loops) const {
     std::vector<bool> used(region.size(), false);
     for (std::size_t first = 0; first < region.size(); ++first) {
@@ -91,8 +91,9 @@ class CutTriangle {
         if (loops.back().empty() || loops.back().back() != corner) loops.back().push_back(corner);
         const auto next = std::lower_bound(region.begin(), region.end(), region[i].to,
                                            [](const HalfEdge& h, Index v) { return h.from < v; });
-        i = next != region.end() && next->from == region[i].to ? static_cast<std::size_t>(next - region.begin())
-                                                               : region.size();
+        i = next != region.end() && next->from == region[i].to
+                ? static_cast<std::size_t>(next - region.begin())
+                : region.size();
       }
       auto& loop = loops.back();
       while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
@@ -109,7 +110,8 @@ class CutTriangle {
   std::vector<HalfEdge> halfEdges_;
 };
 
-/// Walks the border of a triangle, counter-clockwise: visit(from, to, region) for each interval between crossings.
+/// Walks the border of a triangle, counter-clockwise: visit(from, to, region) for each interval between
+/// crossings.
 template <class Across, class Visit>
 void walkBorder(const EdgeTable& edges, const EdgeCrossings& crossings, const Triangle& ownCorners,
                 const Triangle& corners, Index triangle, std::array<Index, 3> regionAtCorner, Across across,
@@ -155,8 +157,10 @@ class Clipper {
       for (std::size_t i = 0; i < a_.segments.size(); ++i)
         order[at(fill[at(key(a_.segments[i]))]++)] = static_cast<Index>(i);
     };
-    group(a_.surface.size(), [](const Segment& s) { return s.surface; }, bySurfaceBegin_, bySurface_);
-    group(a_.crack.size(), [](const Segment& s) { return s.crack; }, byCrackBegin_, byCrack_);
+    group(
+        a_.surface.size(), [](const Segment& s) { return s.surface; }, bySurfaceBegin_, bySurface_);
+    group(
+        a_.crack.size(), [](const Segment& s) { return s.crack; }, byCrackBegin_, byCrack_);
   }
 
   template <class T, class F>
@@ -165,7 +169,8 @@ class Clipper {
     std::vector<std::vector<T>> parts(blocks);
     std::vector<std::size_t> forcedParts(blocks, 0);
     parallelFor(exec_, n, kBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) f(static_cast<Index>(i), parts[begin / kBlock], forcedParts[begin / kBlock]);
+      for (std::size_t i = begin; i < end; ++i)
+        f(static_cast<Index>(i), parts[begin / kBlock], forcedParts[begin / kBlock]);
     });
     std::size_t total = 0;
     for (const auto& part : parts) total += part.size();
@@ -177,14 +182,18 @@ class Clipper {
   bool surfaceTriangleCut(Index s) const {
     if (bySurfaceBegin_[at(s)] != bySurfaceBegin_[at(s) + 1]) return true;
     const auto& edges = a_.surfaceEdges.ofTriangle[at(s)];
-    return std::any_of(edges.begin(), edges.end(), [&](Index e) { return !a_.surfaceCrossings.on(e).empty(); });
+    return std::any_of(edges.begin(), edges.end(),
+                       [&](Index e) { return !a_.surfaceCrossings.on(e).empty(); });
   }
 
   void clipSurface(ClippedMeshes& result) {
-    inBlocks(a_.surface.size(), result.skin, result.forced, [&](Index s, std::vector<SkinTriangle>& out, std::size_t& forced) {
-      if (!surfaceTriangleCut(s)) out.push_back({a_.surface[at(s)], s, a_.surfaceLabel[at(a_.surface[at(s)][0])], false});
-      else splitSurfaceTriangle(s, out, forced);
-    });
+    inBlocks(a_.surface.size(), result.skin, result.forced,
+             [&](Index s, std::vector<SkinTriangle>& out, std::size_t& forced) {
+               if (!surfaceTriangleCut(s))
+                 out.push_back({a_.surface[at(s)], s, a_.surfaceLabel[at(a_.surface[at(s)][0])], false});
+               else
+                 splitSurfaceTriangle(s, out, forced);
+             });
     Index last = -1;
     for (const SkinTriangle& t : result.skin)
       if (t.cut && t.source != last) ++result.cutSurfaceTriangles, last = t.source;
@@ -210,20 +219,24 @@ class Clipper {
       cut.addHalfEdge(segment.from, segment.to, c.back);
       cut.addHalfEdge(segment.to, segment.from, c.front);
     }
-    forced += static_cast<std::size_t>(
-        cut.triangulate([&](const Triangle& t, Index region) { out.push_back({t, s, region, true}); }));
+    forced += static_cast<std::size_t>(cut.triangulate([&](const Triangle& t, Index region) {
+      out.push_back({t, s, region, true});
+    }));
   }
 
   void clipSheets(ClippedMeshes& result) {
-    inBlocks(a_.crack.size(), result.sheet, result.forced, [&](Index c, std::vector<SheetTriangle>& out, std::size_t& forced) {
-      const CrackTriangle& own = complex_.triangles[at(c)];
-      const auto& edges = a_.crackEdges.ofTriangle[at(c)];
-      const bool crossed =
-          byCrackBegin_[at(c)] != byCrackBegin_[at(c) + 1] ||
-          std::any_of(edges.begin(), edges.end(), [&](Index e) { return !a_.crackCrossings.on(e).empty(); });
-      if (crossed) clipCrackTriangle(c, out, forced);
-      else if (a_.crackInside[at(own.corners[0])]) out.push_back({a_.crack[at(c)], own.front, own.back});
-    });
+    inBlocks(a_.crack.size(), result.sheet, result.forced,
+             [&](Index c, std::vector<SheetTriangle>& out, std::size_t& forced) {
+               const CrackTriangle& own = complex_.triangles[at(c)];
+               const auto& edges = a_.crackEdges.ofTriangle[at(c)];
+               const bool crossed = byCrackBegin_[at(c)] != byCrackBegin_[at(c) + 1] ||
+                                    std::any_of(edges.begin(), edges.end(),
+                                                [&](Index e) { return !a_.crackCrossings.on(e).empty(); });
+               if (crossed)
+                 clipCrackTriangle(c, out, forced);
+               else if (a_.crackInside[at(own.corners[0])])
+                 out.push_back({a_.crack[at(c)], own.front, own.back});
+             });
   }
 
   void clipCrackTriangle(Index c, std::vector<SheetTriangle>& out, std::size_t& forced) const {
@@ -234,7 +247,10 @@ class Clipper {
     for (std::size_t i = 0; i < 3; ++i) outside[i] = a_.crackInside[at(own.corners[i])] ? 0 : 1;
     walkBorder(
         a_.crackEdges, a_.crackCrossings, own.corners, corners, c, outside,
-        [](const Crossing& x) { return x.fromFront ? std::array<Index, 2>{1, 0} : std::array<Index, 2>{0, 1}; }, cut,
+        [](const Crossing& x) {
+          return x.fromFront ? std::array<Index, 2>{1, 0} : std::array<Index, 2>{0, 1};
+        },
+        cut,
         [&](Index from, Index to, Index isOutside) {
           if (isOutside == 0) cut.addHalfEdge(from, to, 0);
         });
@@ -245,8 +261,9 @@ class Clipper {
       cut.addInnerVertex(segment.to);
       cut.addHalfEdge(segment.to, segment.from, 0);
     }
-    forced += static_cast<std::size_t>(
-        cut.triangulate([&](const Triangle& t, Index) { out.push_back({t, own.front, own.back}); }));
+    forced += static_cast<std::size_t>(cut.triangulate([&](const Triangle& t, Index) {
+      out.push_back({t, own.front, own.back});
+    }));
   }
 
   const Arrangement& a_;

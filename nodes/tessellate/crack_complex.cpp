@@ -29,7 +29,8 @@ class Builder {
   struct KeyHash {
     std::size_t operator()(const Key& k) const {
       std::size_t h = 0;
-      for (const Index i : k) h = (h ^ static_cast<std::size_t>(static_cast<std::uint32_t>(i))) * 0x9E3779B97F4A7C15ULL;
+      for (const Index i : k)
+        h = (h ^ static_cast<std::size_t>(static_cast<std::uint32_t>(i))) * 0x9E3779B97F4A7C15ULL;
       return h ^ (h >> 29);
     }
   };
@@ -38,16 +39,17 @@ class Builder {
 
   Index label(Index node) const { return partition_.label[at(node)]; }
 
-  /// g_j at a node: squared distance to site j without the term common to all sites, about the body's centroid.
+  /// g_j at a node: squared distance to site j without the term common to all sites, about the body's
+  /// centroid.
   double affineDistance(Index node, Index site) const {
     const auto p = partition_.sites.col(site) - body_;
     const auto x = partition_.embedding->coordinates.col(node) - body_;
     return p.squaredNorm() - 2 * x.dot(p);
   }
 
-  /// Barycentric coordinates of the point of the simplex (a face or a tetrahedron) that is equally far from its nodes'
-  /// sites: the null vector of the differences to the first site, by cofactors, so that no unit enters. Empty where
-  /// there is no such point.
+  /// Barycentric coordinates of the point of the simplex (a face or a tetrahedron) that is equally far from
+  /// its nodes' sites: the null vector of the differences to the first site, by cofactors, so that no unit
+  /// enters. Empty where there is no such point.
   Eigen::VectorXd solveEquidistance(const std::vector<Index>& nodes) const {
     const auto m = static_cast<Eigen::Index>(nodes.size());
     Eigen::Matrix<double, 3, 4> differences = Eigen::Matrix<double, 3, 4>::Zero();
@@ -87,7 +89,8 @@ class Builder {
   }
 
   Eigen::VectorXd edgeWeights(Index a, Index b) const {
-    const double atA = affineDistance(a, label(b)) - affineDistance(a, label(a));  // ≥ 0 with nearest-site labels
+    const double atA =
+        affineDistance(a, label(b)) - affineDistance(a, label(a));  // ≥ 0 with nearest-site labels
     const double atB = affineDistance(b, label(a)) - affineDistance(b, label(b));
     const double sum = atA + atB;
     const double share = sum > 0 ? std::clamp(atA / sum, kMargin, 1 - kMargin) : 0.5;
@@ -108,7 +111,8 @@ class Builder {
     return mean / edges;
   }
 
-  /// The crack vertex of an edge, face or tetrahedron whose nodes all carry different labels. `nodes` in any order.
+  /// The crack vertex of an edge, face or tetrahedron whose nodes all carry different labels. `nodes` in any
+  /// order.
   Index vertexOf(std::initializer_list<Index> simplex) {
     std::vector<Index> nodes(simplex);
     std::sort(nodes.begin(), nodes.end());
@@ -132,7 +136,9 @@ class Builder {
 
   /// A quad of a sheet, split along its shorter diagonal.
   void addQuad(const std::array<Index, 4>& q, Index back, Index front, Index tet) {
-    auto length = [&](Index a, Index b) { return (complex_.vertices[at(a)] - complex_.vertices[at(b)]).squaredNorm(); };
+    auto length = [&](Index a, Index b) {
+      return (complex_.vertices[at(a)] - complex_.vertices[at(b)]).squaredNorm();
+    };
     const std::size_t s = length(q[0], q[2]) <= length(q[1], q[3]) ? 0 : 1;
     addTriangle(q[s], q[s + 1], q[s + 2], back, front, tet);
     addTriangle(q[s], q[s + 2], q[(s + 3) % 4], back, front, tet);
@@ -170,14 +176,15 @@ class Builder {
     if (distinct == 3) return addThreeLabels(s, t);
     if (label(s[2]) == label(s[0])) return addCorner(s, t);
     const Index back = label(s[0]), front = label(s[2]);
-    addQuad({vertexOf({s[0], s[3]}), vertexOf({s[1], s[3]}), vertexOf({s[1], s[2]}), vertexOf({s[0], s[2]})}, back,
-            front, t);
+    addQuad({vertexOf({s[0], s[3]}), vertexOf({s[1], s[3]}), vertexOf({s[1], s[2]}), vertexOf({s[0], s[2]})},
+            back, front, t);
   }
 
   /// (3, 1): one triangle around the single corner s[3].
   void addCorner(const Tetra& s, Index t) {
     // (s3, s2, s1, s0) is an even reordering of (s0, s1, s2, s3).
-    addTriangle(vertexOf({s[3], s[2]}), vertexOf({s[3], s[1]}), vertexOf({s[3], s[0]}), label(s[3]), label(s[0]), t);
+    addTriangle(vertexOf({s[3], s[2]}), vertexOf({s[3], s[1]}), vertexOf({s[3], s[0]}), label(s[3]),
+                label(s[0]), t);
   }
 
   /// (2, 1, 1): s[0], s[1] carry label A, s[2] B, s[3] C.
@@ -196,8 +203,13 @@ class Builder {
     Vec3 mean = Vec3::Zero();
     for (const Index v : {f0, f1, bc, a0b, a1b, a0c, a1c}) mean += complex_.vertices[at(v)] / 7;
     complex_.vertices.push_back(mean);
-    const std::array<std::array<Index, 4>, 8> fan{{{bc, f0, b, c}, {f1, bc, b, c}, {a0b, f0, a, b}, {f1, a1b, a, b},
-                                                   {a1b, a0b, a, b}, {a1c, f1, a, c}, {f0, a0c, a, c},
+    const std::array<std::array<Index, 4>, 8> fan{{{bc, f0, b, c},
+                                                   {f1, bc, b, c},
+                                                   {a0b, f0, a, b},
+                                                   {f1, a1b, a, b},
+                                                   {a1b, a0b, a, b},
+                                                   {a1c, f1, a, c},
+                                                   {f0, a0c, a, c},
                                                    {a0c, a1c, a, c}}};
     for (const auto& [x, y, back, front] : fan) addTriangle(x, y, centre, back, front, t);
   }
@@ -205,7 +217,8 @@ class Builder {
   /// (1, 1, 1, 1): two triangles for each edge.
   void addFourLabels(const Tetra& s, Index t) {
     const Index centre = vertexOf({s[0], s[1], s[2], s[3]});
-    static constexpr int kEven[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};
+    static constexpr int kEven[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
+                                        {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};
     for (const auto& e : kEven) {
       const Index i = s[static_cast<std::size_t>(e[0])], j = s[static_cast<std::size_t>(e[1])],
                   k = s[static_cast<std::size_t>(e[2])], l = s[static_cast<std::size_t>(e[3])];
@@ -223,7 +236,8 @@ class Builder {
         const Triangle &s = complex_.triangles[i].corners, &t = complex_.triangles[j].corners;
         for (std::size_t e = 0; e < 3; ++e) {
           const Index p = s[e], q = s[(e + 1) % 3];
-          const bool shares = std::find(t.begin(), t.end(), p) != t.end() || std::find(t.begin(), t.end(), q) != t.end();
+          const bool shares =
+              std::find(t.begin(), t.end(), p) != t.end() || std::find(t.begin(), t.end(), q) != t.end();
           if (!shares && points.crosses(p, q, t)) return true;
         }
       }
@@ -235,8 +249,10 @@ class Builder {
     auto mark = [&](Key key) {
       std::sort(key.begin(), key.end());
       // Padding sorts to the front; keys hold it at the back.
-      std::rotate(key.begin(), std::find_if(key.begin(), key.end(), [](Index i) { return i >= 0; }), key.end());
-      if (const auto found = known_.find(key); found != known_.end()) complex_.onCage[at(found->second)] = true;
+      std::rotate(key.begin(), std::find_if(key.begin(), key.end(), [](Index i) { return i >= 0; }),
+                  key.end());
+      if (const auto found = known_.find(key); found != known_.end())
+        complex_.onCage[at(found->second)] = true;
     };
     for (const Triangle& f : tets_.boundary) {
       mark({f[0], f[1], f[2], -1});

@@ -40,8 +40,8 @@ class Assembler {
   }
 
  private:
-  /// Vertices that rounding placed on one spot are one: triangles that lose a corner vanish, on both sides of a sheet
-  /// alike, and what is left closes as before.
+  /// Vertices that rounding placed on one spot are one: triangles that lose a corner vanish, on both sides of
+  /// a sheet alike, and what is left closes as before.
   std::optional<Triangle> merged(const Triangle& t) const {
     const Triangle r{a_.same[at(t[0])], a_.same[at(t[1])], a_.same[at(t[2])]};
     if (r[0] == r[1] || r[1] == r[2] || r[2] == r[0]) return std::nullopt;
@@ -51,7 +51,8 @@ class Assembler {
   void gatherFaces() {
     faces_.reserve(m_.skin.size() + 2 * m_.sheet.size());
     for (std::size_t i = 0; i < m_.skin.size(); ++i)
-      if (const auto t = merged(m_.skin[i].corners)) faces_.push_back({*t, m_.skin[i].cell, static_cast<Index>(i), -1});
+      if (const auto t = merged(m_.skin[i].corners))
+        faces_.push_back({*t, m_.skin[i].cell, static_cast<Index>(i), -1});
     for (std::size_t i = 0; i < m_.sheet.size(); ++i) {
       const auto t = merged(m_.sheet[i].corners);
       if (!t) continue;
@@ -78,7 +79,8 @@ class Assembler {
     });
     DisjointSets sets(faces_.size());
     for (std::size_t i = 0; i + 1 < sides.size(); ++i)
-      if (sides[i].cell == sides[i + 1].cell && sides[i].low == sides[i + 1].low && sides[i].high == sides[i + 1].high)
+      if (sides[i].cell == sides[i + 1].cell && sides[i].low == sides[i + 1].low &&
+          sides[i].high == sides[i + 1].high)
         sets.join(at(sides[i].face), at(sides[i + 1].face));
     return sets;
   }
@@ -120,8 +122,8 @@ class Assembler {
     return triangles;
   }
 
-  /// A shell of negative volume is a void of the smallest solid of its cell that holds it. One that nothing holds is
-  /// a part that rounding left flat: a solid of its own, which then joins a neighbour.
+  /// A shell of negative volume is a void of the smallest solid of its cell that holds it. One that nothing
+  /// holds is a part that rounding left flat: a solid of its own, which then joins a neighbour.
   void giveVoid(Solid& hole, const std::vector<std::size_t>& candidates) {
     const Vec3& probe = positions_[at(faces_[at(hole.faces.front())].corners[0])];
     std::optional<std::size_t> owner;
@@ -190,7 +192,8 @@ class Assembler {
     for (std::size_t s = 0; s < solids_.size(); ++s)
       if (joined_[s] == static_cast<Index>(s)) order.push_back(s);
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return std::tuple(-solids_[a].volume, solids_[a].cell, a) < std::tuple(-solids_[b].volume, solids_[b].cell, b);
+      return std::tuple(-solids_[a].volume, solids_[a].cell, a) <
+             std::tuple(-solids_[b].volume, solids_[b].cell, b);
     });
     out_.pieces.resize(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
@@ -224,8 +227,8 @@ class Assembler {
     const Triangle& source = a_.surface[at(skin.source)];
     auto& weights = out_.cutCorners.emplace_back();
     for (std::size_t c = 0; c < 3; ++c)
-      weights[c] = barycentric(positions_[at(source[0])], positions_[at(source[1])], positions_[at(source[2])],
-                               positions_[at(face.corners[c])]);
+      weights[c] = barycentric(positions_[at(source[0])], positions_[at(source[1])],
+                               positions_[at(source[2])], positions_[at(face.corners[c])]);
   }
 
   void integrate(Piece& piece) const {
@@ -267,7 +270,7 @@ class Assembler {
   std::vector<Solid> solids_;
   std::vector<Index> solidOfFace_;
   std::vector<std::array<Index, 2>> sheetSides_;  ///< per sheet triangle: its two faces
-  std::vector<Index> joined_;       ///< per solid: the one that it joined, or itself
+  std::vector<Index> joined_;                     ///< per solid: the one that it joined, or itself
   Fragments out_;
 };
 

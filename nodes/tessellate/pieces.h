@@ -9,10 +9,10 @@
 
 namespace sherd {
 
-/// Gathers each cell's skin and sheets, splits it into connected solids (joined by shared edges; a void belongs to the
-/// solid around it), lets solids smaller than `minVolume` (m³) join the neighbour with the largest contact area,
-/// and fills in all of Fragments but `tets`, `material`, and what the cells' search found. Solids without a
-/// neighbour stay, however small. Cost O(n log n) in the number of triangles.
+/// Gathers each cell's skin and sheets, splits it into connected solids (joined by shared edges; a void
+/// belongs to the solid around it), lets solids smaller than `minVolume` (m³) join the neighbour with the
+/// largest contact area, and fills in all of Fragments but `tets`, `material`, and what the cells' search
+/// found. Solids without a neighbour stay, however small. Cost O(n log n) in the number of triangles.
 Fragments assemblePieces(const Arrangement& arrangement, const ClippedMeshes& meshes, double minVolume,
                          double density);
 

@@ -55,9 +55,11 @@ class Plane {
   std::span<const PlanarCorner> corners_;
 };
 
-/// Does the direction from slot i of the loop towards corner `target` lead into the region on the loop's left?
+/// Does the direction from slot i of the loop towards corner `target` lead into the region on the loop's
+/// left?
 bool leadsInside(const Plane& plane, const Loop& loop, std::size_t i, Index target) {
-  const Index before = loop[(i + loop.size() - 1) % loop.size()], here = loop[i], after = loop[(i + 1) % loop.size()];
+  const Index before = loop[(i + loop.size() - 1) % loop.size()], here = loop[i],
+              after = loop[(i + 1) % loop.size()];
   const bool leftOfIn = plane.turn(before, here, target) > 0, leftOfOut = plane.turn(here, after, target) > 0;
   return plane.turn(before, here, after) > 0 ? leftOfIn && leftOfOut : leftOfIn || leftOfOut;
 }
@@ -163,7 +165,8 @@ class EarCutter {
 };
 
 /// One pass over all inner edges; returns whether any was flipped.
-bool flipPass(const Plane& plane, std::vector<Triangle>& triangles, const std::set<std::pair<Index, Index>>& fixed) {
+bool flipPass(const Plane& plane, std::vector<Triangle>& triangles,
+              const std::set<std::pair<Index, Index>>& fixed) {
   struct Side {
     Index low, high, opposite;
     std::size_t triangle;
@@ -201,7 +204,8 @@ void flipToBetterAngles(const Plane& plane, std::span<const Loop> loops, std::ve
   if (triangles.size() < 2) return;
   std::set<std::pair<Index, Index>> fixed;
   for (const Loop& loop : loops)
-    for (std::size_t i = 0; i < loop.size(); ++i) fixed.insert(std::minmax(loop[i], loop[(i + 1) % loop.size()]));
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      fixed.insert(std::minmax(loop[i], loop[(i + 1) % loop.size()]));
   for (std::size_t pass = 0; pass < 4 * triangles.size() && flipPass(plane, triangles, fixed); ++pass) {
   }
 }
@@ -250,7 +254,8 @@ PolygonTriangulation triangulatePolygon(std::span<const PlanarCorner> corners, s
   for (std::size_t o = 0; o < outers.size(); ++o) {
     Loop loop = outers[o];
     for (std::size_t h = 0; h < holesOf[o].size(); ++h) {
-      const std::span<const Loop> others(holesOf[o].begin() + static_cast<std::ptrdiff_t>(h) + 1, holesOf[o].end());
+      const std::span<const Loop> others(holesOf[o].begin() + static_cast<std::ptrdiff_t>(h) + 1,
+                                         holesOf[o].end());
       if (!bridgeHole(plane, loop, holesOf[o][h], others)) ++result.forced;
     }
     EarCutter(plane, loop).cut(result);

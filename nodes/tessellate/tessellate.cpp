@@ -29,6 +29,7 @@ Result<Fragments> tessellate(const Partition& cells, const TessellateParams& par
   result.sites = cells.siteCount();
   result.energy = cells.energy;
   result.gamma = cells.gamma;
+  result.degreeGiven = cells.degreeGiven;
   result.counts.cutTets = complex.cutTets;
   result.counts.crackTriangles = complex.triangles.size();
   result.counts.cutSurfaceTriangles = meshes.cutSurfaceTriangles;

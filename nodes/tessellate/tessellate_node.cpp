@@ -6,34 +6,39 @@
 namespace sherd {
 namespace {
 
+std::string parts(std::size_t count) { return count == 1 ? "1 part" : fmt::format("{} parts", count); }
+
 void report(const Fragments& f, const Exec& exec) {
   if (f.pieces.size() == 1) {
     exec.info("nothing was cut: the body stays one piece");
     return;
   }
   exec.info(fmt::format("{} pieces from {} cells; {} of {} tetrahedra and {} of {} surface triangles cut",
-                        f.pieces.size(), f.sites, f.counts.cutTets, f.tets->tets.size(), f.counts.cutSurfaceTriangles,
-                        f.tets->surface->triangles.size()));
+                        f.pieces.size(), f.sites, f.counts.cutTets, f.tets->tets.size(),
+                        f.counts.cutSurfaceTriangles, f.tets->surface->triangles.size()));
   if (f.counts.detachedParts > 0)
-    exec.info(fmt::format("{} parts were detached from their cells by the cut", f.counts.detachedParts));
+    exec.info(fmt::format("{} detached from the rest of their cells", parts(f.counts.detachedParts)));
   if (f.counts.mergedParts > 0)
-    exec.info(fmt::format("{} parts below min_volume joined a neighbour", f.counts.mergedParts));
+    exec.info(fmt::format("{} below min_volume joined a neighbour", parts(f.counts.mergedParts)));
   if (f.counts.forcedTriangles > 0)
-    exec.warn(fmt::format("{} triangles came out flat or overlapping after rounding", f.counts.forcedTriangles));
+    exec.warn(
+        fmt::format("{} triangles came out flat or overlapping after rounding", f.counts.forcedTriangles));
 }
 
 }  // namespace
 
 NodeType tessellateNode() {
-  return NodeBuilder<TessellateParams>("Tessellate", 1, "Cuts the surface into closed pieces along the cells.")
+  return NodeBuilder<TessellateParams>("Tessellate", 1,
+                                       "Cuts the surface into closed pieces along the cells.")
       .input<Partition>("cells", "the cells to cut along, from CVD")
       .optionalInput<TriMesh>("mesh", "the surface to cut; must be the one that the tetrahedra were made for")
-      .number("min_volume", &TessellateParams::minVolume,
-              {.unit = "share of the body's volume",
-               .min = 0,
-               .max = 1,
-               .openMax = true,
-               .help = "parts smaller than this join the neighbour that they touch most"})
+      .number(
+          "min_volume", &TessellateParams::minVolume,
+          {.min = 0,
+           .max = 1,
+           .openMax = true,
+           .help =
+               "parts smaller than this share of the body's volume join the neighbour that they touch most"})
       .output<Fragments>("pieces", "closed pieces, each with its outer skin and its crack faces")
       .run([](const TessellateParams& params, NodeIo& io) -> Result<void> {
         const auto cells = io.in<Partition>("cells");
@@ -41,7 +46,8 @@ NodeType tessellateNode() {
           const TriMesh& own = *cells->embedding->tets->surface;
           if (mesh.get() != &own && (mesh->positions != own.positions || mesh->triangles != own.triangles))
             return failure("this mesh is not the one that the tetrahedra were made for",
-                           "wire the same mesh to Tetrahedralize and to Tessellate, or leave this input out", "mesh");
+                           "wire the same mesh to Tetrahedralize and to Tessellate, or leave this input out",
+                           "mesh");
         }
         SHERD_ASSIGN(Fragments pieces, tessellate(*cells, params, io.exec()));
         report(pieces, io.exec());

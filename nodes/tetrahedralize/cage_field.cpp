@@ -51,27 +51,28 @@ class SpreadPoints {
 /// Voxels and band for offsets around `offset`: the search for the edge length shall not need a new one each
 /// time.
 std::shared_ptr<const LevelSet> fittingLevelSet(const UnitSurface& surface, double offset,
-                                                std::shared_ptr<const LevelSet>& last) {
+                                                std::shared_ptr<const LevelSet>& last, const Exec& exec) {
   const auto bandFor = [](double largest, double voxel) { return largest + 2 * voxel; };
   if (last && last->voxel() <= offset / kLeastVoxels && last->band() >= bandFor(offset, last->voxel()))
     return last;
   const double voxel = offset / kVoxelsPerOffset;
   last = std::make_shared<const LevelSet>(surface.positions, surface.triangles, voxel,
-                                          bandFor(1.2 * offset, voxel));
+                                          bandFor(1.2 * offset, voxel), exec);
   return last;
 }
 
 }  // namespace
 
 CageField::CageField(const UnitSurface& surface, const SurfaceTree& tree, CageSizes sizes,
-                     std::shared_ptr<const LevelSet>& levelSet)
+                     std::shared_ptr<const LevelSet>& levelSet, const Exec& exec)
     : surface_(surface),
       tree_(tree),
+      exec_(exec),
       sizes_(std::move(sizes)),
       offsetShare_(kOffsetShare * sizes_.closeness),
       gapEdge_(sizes_.edgeLength, kGrading, gapSpots(sizes_)),
       finer_(sizes_.edgeLength, kGrading, sizes_.finer),
-      levelSet_(fittingLevelSet(surface, offsetShare_ * sizes_.edgeLength, levelSet)),
+      levelSet_(fittingLevelSet(surface, offsetShare_ * sizes_.edgeLength, levelSet, exec)),
       distance_(levelSet_->sampler()) {}
 
 double CageField::operator()(const Vec3& x) const {
@@ -92,6 +93,7 @@ double CageField::expectedTets() const {
   const RefinedSurface fine = refineLongEdges(surface_.positions, surface_.triangles, sizes_.edgeLength);
   double layer = 0;
   for (const Triangle& t : fine.triangles) {
+    if (exec_.cancelled()) break;
     const Vec3 &a = fine.positions[at(t[0])], &b = fine.positions[at(t[1])], &c = fine.positions[at(t[2])];
     const double h = edgeLength((a + b + c) / 3);
     layer += 0.5 * (b - a).cross(c - a).norm() * 4 / (0.433 * h * h);
@@ -112,6 +114,7 @@ std::vector<Vec3> CageField::seeds() const {
     const double apart = std::min(1.5 * sizes_.edgeLength, 0.3 * box.diagonal());
     const RefinedSurface fine = refineLongEdges(surface_.positions, part, apart);
     for (const Triangle& t : fine.triangles) {
+      if (exec_.cancelled()) return points;
       const Vec3 &a = fine.positions[at(t[0])], &b = fine.positions[at(t[1])], &c = fine.positions[at(t[2])];
       const Vec3 p = (a + b + c) / 3, normal = (b - a).cross(c - a).normalized();
       if (!(normal.squaredNorm() > 0.5) || !spread.add(p, normal, std::min(apart, 1.5 * edgeLength(p))))

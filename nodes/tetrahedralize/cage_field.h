@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/exec.h"
 #include "geometry/surface_tree.h"
 #include "tetrahedralize/gaps.h"
 #include "tetrahedralize/graded_minimum.h"
@@ -43,8 +44,10 @@ struct CageSizes {
 class CageField {
  public:
   /// Takes over `levelSet` where it is fine and wide enough for the sizes, else makes a new one in its place.
+  /// This, expectedTets() and volume() are cut short when cancelled, and their results then unfit for use:
+  /// check exec.cancelled() afterwards.
   CageField(const UnitSurface& surface, const SurfaceTree& tree, CageSizes sizes,
-            std::shared_ptr<const LevelSet>& levelSet);
+            std::shared_ptr<const LevelSet>& levelSet, const Exec& exec);
 
   double offset(const Vec3& x) const { return offsetShare_ * gapEdge_(x); }
   double edgeLength(const Vec3& x) const { return std::min(gapEdge_(x), finer_(x)); }
@@ -63,6 +66,7 @@ class CageField {
 
   const UnitSurface& surface_;
   const SurfaceTree& tree_;
+  const Exec& exec_;
   CageSizes sizes_;
   double offsetShare_;
   GradedMinimum gapEdge_, finer_;

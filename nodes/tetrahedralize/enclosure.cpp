@@ -1,10 +1,5 @@
 #include "tetrahedralize/enclosure.h"
 
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-
 #include <algorithm>
 #include <map>
 #include <set>
@@ -15,42 +10,6 @@
 
 namespace sherd {
 namespace {
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Triangles = std::vector<Kernel::Triangle_3>;
-using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
-using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
-
-Kernel::Point_3 toPoint(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
-
-Kernel::Triangle_3 toTriangle(std::span<const Vec3> positions, const Triangle& t) {
-  return {toPoint(positions[at(t[0])]), toPoint(positions[at(t[1])]), toPoint(positions[at(t[2])])};
-}
-
-/// Exact intersection tests against the cage's boundary.
-class BoundaryTree {
- public:
-  explicit BoundaryTree(const TetMesh& cage) {
-    for (const Triangle& f : cage.boundary) facets_.push_back(toTriangle(cage.nodes, f));
-    tree_.insert(facets_.begin(), facets_.end());
-    tree_.build();
-  }
-  /// Facets that meet the triangle, ascending.
-  std::vector<Index> meeting(const Kernel::Triangle_3& triangle) const {
-    std::vector<Primitive::Id> ids;
-    tree_.all_intersected_primitives(triangle, std::back_inserter(ids));
-    std::vector<Index> facets;
-    for (const auto id : ids) facets.push_back(static_cast<Index>(id - facets_.begin()));
-    std::sort(facets.begin(), facets.end());
-    return facets;
-  }
-  bool meets(const Kernel::Triangle_3& triangle) const { return tree_.do_intersect(triangle); }
-  const Kernel::Triangle_3& facet(Index f) const { return facets_[at(f)]; }
-
- private:
-  Triangles facets_;
-  Tree tree_;
-};
 
 Vec3 facetNormal(const TetMesh& cage, Index f) {
   const Triangle& t = cage.boundary[at(f)];
@@ -92,14 +51,14 @@ class BreachList {
 
 /// From vertices of breaching triangles, the vertices outside the cage that hang together, with their
 /// distances.
-void addOutsideVertices(const TetMesh& cage, std::span<const Vec3> positions,
-                        std::span<const Triangle> triangles, std::vector<Index> from, BreachList& breaches) {
+void addOutsideVertices(const SurfaceTree& boundary, std::span<const Vec3> positions,
+                        std::span<const Triangle> triangles, std::vector<Index> from, BreachList& breaches,
+                        const Exec& exec) {
   std::vector<std::vector<Index>> around(positions.size());
   for (const Triangle& t : triangles)
     for (std::size_t c = 0; c < 3; ++c) around[at(t[c])].push_back(t[(c + 1) % 3]);
-  const SurfaceTree boundary(cage.nodes, cage.boundary);
   std::vector<bool> seen(positions.size(), false);
-  while (!from.empty()) {
+  while (!from.empty() && !exec.cancelled()) {
     const Index v = from.back();
     from.pop_back();
     if (seen[at(v)]) continue;
@@ -125,12 +84,12 @@ std::vector<Vec3> nodeNormals(const TetMesh& cage) {
 }
 
 /// Does a facet with a moved node meet a facet that it shares no node with?
-bool meetsItself(const TetMesh& cage, const std::vector<Vec3>& push) {
-  const BoundaryTree tree(cage);
-  for (std::size_t f = 0; f < cage.boundary.size(); ++f) {
+bool meetsItself(const TetMesh& cage, const std::vector<Vec3>& push, const Exec& exec) {
+  const SurfaceTree tree(cage.nodes, cage.boundary);
+  for (std::size_t f = 0; f < cage.boundary.size() && !exec.cancelled(); ++f) {
     const Triangle& t = cage.boundary[f];
     if (std::all_of(t.begin(), t.end(), [&](Index n) { return push[at(n)].isZero(); })) continue;
-    for (const Index other : tree.meeting(tree.facet(static_cast<Index>(f)))) {
+    for (const Index other : tree.meeting(cage.nodes[at(t[0])], cage.nodes[at(t[1])], cage.nodes[at(t[2])])) {
       const Triangle& o = cage.boundary[at(other)];
       if (std::none_of(t.begin(), t.end(),
                        [&](Index n) { return std::find(o.begin(), o.end(), n) != o.end(); }))
@@ -143,17 +102,17 @@ bool meetsItself(const TetMesh& cage, const std::vector<Vec3>& push) {
 constexpr double kLeastShare = 0.3;  ///< of its volume that a tetrahedron keeps in one push
 
 /// Moves the nodes, halving the moves at tetrahedra that would get too small. False if nothing moved.
-bool moveNodes(TetMesh& cage, std::vector<Vec3>& push) {
+bool moveNodes(TetMesh& cage, std::vector<Vec3>& push, const Exec& exec) {
   const std::vector<Vec3> before = cage.nodes;
   const auto volumeOf = [&](const Tetra& t, const std::vector<Vec3>& x) {
     return (x[at(t[1])] - x[at(t[0])]).cross(x[at(t[2])] - x[at(t[0])]).dot(x[at(t[3])] - x[at(t[0])]);
   };
-  for (int round = 0; round < 12; ++round) {
+  for (int round = 0; round < 12 && !exec.cancelled(); ++round) {
     for (std::size_t n = 0; n < cage.nodes.size(); ++n) cage.nodes[n] = before[n] + push[n];
     std::set<Index> tooFar;
     for (const Tetra& t : cage.tets)
       if (volumeOf(t, cage.nodes) < kLeastShare * volumeOf(t, before)) tooFar.insert(t.begin(), t.end());
-    if (tooFar.empty() && !meetsItself(cage, push))
+    if (tooFar.empty() && !meetsItself(cage, push, exec))
       return std::any_of(push.begin(), push.end(), [](const Vec3& p) { return !p.isZero(); });
     // Where the boundary would meet itself all moves are halved: rare, and then any of them may be the cause.
     if (tooFar.empty())
@@ -169,25 +128,25 @@ bool moveNodes(TetMesh& cage, std::vector<Vec3>& push) {
 std::vector<Breach> findBreaches(const TetMesh& cage, std::span<const Vec3> positions,
                                  std::span<const Triangle> triangles, const std::vector<Shell>& shells,
                                  const Exec& exec) {
-  const BoundaryTree tree(cage);
+  const SurfaceTree tree(cage.nodes, cage.boundary);
+  const auto corner = [&](std::size_t t, std::size_t c) { return positions[at(triangles[t][c])]; };
   std::vector<char> breaching(triangles.size(), 0);
   parallelFor(exec, triangles.size(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) breaching[t] = tree.meets(toTriangle(positions, triangles[t]));
+    for (std::size_t t = begin; t < end; ++t)
+      breaching[t] = tree.meets(corner(t, 0), corner(t, 1), corner(t, 2));
   });
   BreachList breaches;
   std::vector<Index> start;
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
+  for (std::size_t t = 0; t < triangles.size() && !exec.cancelled(); ++t) {
     if (!breaching[t]) continue;
     start.insert(start.end(), triangles[t].begin(), triangles[t].end());
-    const Vec3 middle =
-        (positions[at(triangles[t][0])] + positions[at(triangles[t][1])] + positions[at(triangles[t][2])]) /
-        3;
-    for (const Index f : tree.meeting(toTriangle(positions, triangles[t])))
+    const Vec3 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2), middle = (a + b + c) / 3;
+    for (const Index f : tree.meeting(a, b, c))
       breaches.add(f, heightOver(cage, f, positions, triangles[t]), middle);
   }
   // A shell that meets no facet is inside as a whole or outside as a whole.
   for (const Shell& shell : shells) start.push_back(triangles[at(shell.triangles.front())][0]);
-  addOutsideVertices(cage, positions, triangles, std::move(start), breaches);
+  addOutsideVertices(tree, positions, triangles, std::move(start), breaches, exec);
   return breaches.take();
 }
 
@@ -209,7 +168,7 @@ std::vector<Breach> pushOutward(TetMesh& cage, std::vector<Breach> breaches, std
     }
     std::vector<Vec3> push(cage.nodes.size());
     for (std::size_t n = 0; n < push.size(); ++n) push[n] = length[n] * normals[n];
-    if (!moveNodes(cage, push)) break;
+    if (!moveNodes(cage, push, exec)) break;
     breaches = findBreaches(cage, positions, triangles, shells, exec);
   }
   return breaches;

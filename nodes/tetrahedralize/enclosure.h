@@ -19,7 +19,8 @@ struct Breach {
 
 /// Facets that a surface triangle meets (even in a point), and facets nearest to surface vertices outside, in
 /// ascending order. Empty if and only if the whole surface lies strictly inside the cage. `cage` needs nodes,
-/// tets and boundary. Cost O((triangles + facets) log facets).
+/// tets and boundary. Cost O((triangles + facets) log facets). When cancelled, what is returned has no
+/// meaning.
 std::vector<Breach> findBreaches(const TetMesh& cage, std::span<const Vec3> positions,
                                  std::span<const Triangle> triangles, const std::vector<Shell>& shells,
                                  const Exec& exec);

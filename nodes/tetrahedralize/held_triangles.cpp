@@ -55,32 +55,32 @@ class TetGrid {
   std::vector<std::vector<Index>> bucket_;
 };
 
-/// Is the axis one that separates the two point sets by more than rounding?
+/// Is the axis one that separates the two point sets by more than `slack` (m)?
 template <std::size_t N, std::size_t M>
-bool separates(const Vec3& axis, const std::array<Vec3, N>& a, const std::array<Vec3, M>& b) {
+bool separates(const Vec3& axis, const std::array<Vec3, N>& a, const std::array<Vec3, M>& b, double slack) {
   double lowA = axis.dot(a[0]), highA = lowA, lowB = axis.dot(b[0]), highB = lowB;
   for (const Vec3& p : a) lowA = std::min(lowA, axis.dot(p)), highA = std::max(highA, axis.dot(p));
   for (const Vec3& p : b) lowB = std::min(lowB, axis.dot(p)), highB = std::max(highB, axis.dot(p));
   const double largest = std::max({std::abs(lowA), std::abs(highA), std::abs(lowB), std::abs(highB)});
-  const double margin = 1e-14 * largest;
+  const double margin = 1e-14 * largest + slack * axis.norm();
   return lowA > highB + margin || lowB > highA + margin;
 }
 
 /// Do triangle and tetrahedron (relative to a near origin) touch? True where rounding leaves it open.
-bool touches(const std::array<Vec3, 3>& triangle, const std::array<Vec3, 4>& tet) {
+bool touches(const std::array<Vec3, 3>& triangle, const std::array<Vec3, 4>& tet, double slack) {
   for (const auto& face : kTetraFace) {
     const Vec3& p = tet[static_cast<std::size_t>(face[0])];
     const Vec3 normal =
         (tet[static_cast<std::size_t>(face[1])] - p).cross(tet[static_cast<std::size_t>(face[2])] - p);
-    if (separates(normal, triangle, tet)) return false;
+    if (separates(normal, triangle, tet, slack)) return false;
   }
   std::array<Vec3, 3> edges;
   for (std::size_t c = 0; c < 3; ++c) edges[c] = triangle[(c + 1) % 3] - triangle[c];
-  if (separates(edges[0].cross(edges[1]), triangle, tet)) return false;
+  if (separates(edges[0].cross(edges[1]), triangle, tet, slack)) return false;
   for (const auto& edge : kTetraEdge) {
     const Vec3 e = tet[static_cast<std::size_t>(edge[1])] - tet[static_cast<std::size_t>(edge[0])];
     for (const Vec3& side : edges)
-      if (separates(e.cross(side), triangle, tet)) return false;
+      if (separates(e.cross(side), triangle, tet, slack)) return false;
   }
   return true;
 }
@@ -90,6 +90,11 @@ bool touches(const std::array<Vec3, 3>& triangle, const std::array<Vec3, 4>& tet
 void holdTriangles(TetMesh& cage, std::span<const Vec3> positions, std::span<const Triangle> triangles,
                    const Exec& exec) {
   const TetGrid grid(cage);
+  // Points computed within a tetrahedron are rounded to the digits of their coordinates, which are fewer far
+  // from the origin; a triangle that such a point can reach counts as held.
+  const Box bounds = boxOf(cage.nodes);
+  const double farthest = std::max(bounds.low.cwiseAbs().maxCoeff(), bounds.high.cwiseAbs().maxCoeff());
+  const double slack = 1e-13 * bounds.diagonal() + 1e-15 * farthest;
   std::vector<std::vector<Index>> touched(triangles.size());
   parallelFor(exec, triangles.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<Index> candidates;
@@ -105,7 +110,7 @@ void holdTriangles(TetMesh& cage, std::span<const Vec3> positions, std::span<con
       for (const Index k : candidates) {
         std::array<Vec3, 4> tet;
         for (std::size_t c = 0; c < 4; ++c) tet[c] = cage.nodes[at(cage.tets[at(k)][c])] - origin;
-        if (touches(triangle, tet)) touched[t].push_back(k);
+        if (touches(triangle, tet, slack)) touched[t].push_back(k);
       }
     }
   });

@@ -15,7 +15,7 @@ namespace {
 /// Crossings of the surface with the lines (i, j, ·) through voxel centres, in voxel units.
 class Columns {
  public:
-  Columns(const std::vector<openvdb::Vec3s>& points, std::span<const Triangle> triangles) {
+  Columns(const std::vector<openvdb::Vec3s>& points, std::span<const Triangle> triangles, const Exec& exec) {
     Box box;
     for (const openvdb::Vec3s& p : points) box.add(Vec3(p.x(), p.y(), p.z()));
     low_[0] = static_cast<int>(std::floor(box.low.x())) - 1;
@@ -23,8 +23,14 @@ class Columns {
     size_[0] = static_cast<int>(std::ceil(box.high.x())) + 2 - low_[0];
     size_[1] = static_cast<int>(std::ceil(box.high.y())) + 2 - low_[1];
     crossings_.resize(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]));
-    for (const Triangle& t : triangles) add(points[at(t[0])], points[at(t[1])], points[at(t[2])]);
-    for (auto& column : crossings_) std::sort(column.begin(), column.end());
+    for (const Triangle& t : triangles) {
+      if (exec.cancelled()) return;
+      add(points[at(t[0])], points[at(t[1])], points[at(t[2])]);
+    }
+    for (auto& column : crossings_) {
+      if (exec.cancelled()) return;
+      std::sort(column.begin(), column.end());
+    }
   }
 
   bool inside(int i, int j, double z) const {
@@ -74,6 +80,13 @@ class Columns {
   std::vector<std::vector<std::pair<double, int>>> crossings_;
 };
 
+/// Lets OpenVDB ask whether to go on.
+struct Interrupter : openvdb::util::NullInterrupter {
+  explicit Interrupter(const Exec& run) : exec(run) {}
+  bool wasInterrupted(int) override { return exec.cancelled(); }
+  const Exec& exec;
+};
+
 }  // namespace
 
 struct LevelSet::Impl {
@@ -81,7 +94,7 @@ struct LevelSet::Impl {
 };
 
 LevelSet::LevelSet(std::span<const Vec3> positions, std::span<const Triangle> triangles, double voxel,
-                   double band)
+                   double band, const Exec& exec)
     : impl_(std::make_unique<Impl>()), voxel_(voxel), band_(band) {
   openvdb::initialize();
   std::vector<openvdb::Vec3s> points;
@@ -96,11 +109,16 @@ LevelSet::LevelSet(std::span<const Vec3> positions, std::span<const Triangle> tr
 
   const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> mesh(points, faces);
   const auto unit = openvdb::math::Transform::createLinearTransform(1.0);
+  Interrupter interrupter(exec);
+  // By its base: for that type OpenVDB's library has the template ready.
+  openvdb::util::NullInterrupter& interrupterBase = interrupter;
   const float width = static_cast<float>(band / voxel);
-  impl_->grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(mesh, *unit, width, width,
+  impl_->grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(interrupterBase, mesh, *unit, width, width,
                                                                  openvdb::tools::UNSIGNED_DISTANCE_FIELD);
-  const Columns columns(points, triangles);
+  if (exec.cancelled()) return;
+  const Columns columns(points, triangles, exec);
   for (auto it = impl_->grid->beginValueOn(); it; ++it) {
+    if (exec.cancelled()) return;
     const openvdb::Coord c = it.getCoord();
     if (columns.inside(c.x(), c.y(), c.z())) it.setValue(-*it);
   }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "base/exec.h"
 #include "types/vec.h"
 
 namespace sherd {
@@ -15,7 +16,9 @@ namespace sherd {
 class LevelSet {
  public:
   /// Positions and sizes in one unit of length. `band`: how far from the surface distances are kept.
-  LevelSet(std::span<const Vec3> positions, std::span<const Triangle> triangles, double voxel, double band);
+  /// When cancelled, what was made is unfit for use: check exec.cancelled() afterwards.
+  LevelSet(std::span<const Vec3> positions, std::span<const Triangle> triangles, double voxel, double band,
+           const Exec& exec);
   ~LevelSet();
   LevelSet(LevelSet&&) noexcept;
 

@@ -137,6 +137,12 @@ class CageBuilder {
   Result<TetMesh> build() {
     nominal_ =
         params_.edgeLength > 0 ? params_.edgeLength / surface_.size : edgeForCount(surface_, params_.tets);
+    if (const double least = edgeForCount(surface_, kMostAskedFor); nominal_ < least)
+      return failure(fmt::format("edges of {:g} m would take far more than {:g} tetrahedra",
+                                 nominal_ * surface_.size, kMostAskedFor),
+                     fmt::format("ask for at least {:.2g} m, or for 0 and a number of tetrahedra",
+                                 least * surface_.size),
+                     params_.edgeLength > 0 ? "edge_length" : "tets");
     nominal_ = std::min(nominal_, 0.25);  // at least a few edges across the object
     exec_.progress(0.02);
     SHERD_CHECK(lookForGaps());
@@ -148,7 +154,7 @@ class CageBuilder {
     };
     for (int tries = 0; tries < kTries; ++tries) {
       exec_.progress(0.6 + 0.06 * tries);
-      SHERD_CHECK(mesh.removeSlivers(kPerturbBound, kExudeBound, hasTopology));
+      SHERD_CHECK(mesh.removeSlivers(kPerturbBound, kExudeBound, hasTopology, exec_));
       TetMesh cage = toMetres(mesh.extract(), surface_);
       SHERD_ASSIGN(bool good, verify(cage));
       if (exec_.cancelled()) return cancelledError();
@@ -185,12 +191,14 @@ class CageBuilder {
   }
 
   Result<VolumeMesh> meshOnce() {
-    field_ = std::make_unique<CageField>(surface_, tree_, sizes_, levelSet_);
+    field_ = std::make_unique<CageField>(surface_, tree_, sizes_, levelSet_, exec_);
     if (exec_.cancelled()) return cancelledError();
     const std::size_t most = std::max(kAlwaysAllowed, kMostTets * static_cast<std::size_t>(aimedTets()));
     if (const double expected = field_->expectedTets(); expected > static_cast<double>(most))
       return tooMany(expected);
-    return VolumeMesh::refine(field_->volume(), exec_);
+    const VolumeToMesh volume = field_->volume();
+    if (exec_.cancelled()) return cancelledError();
+    return VolumeMesh::refine(volume, exec_);
   }
 
   double aimedTets() const {
@@ -336,7 +344,8 @@ class CageBuilder {
     return cage;
   }
 
-  static constexpr double kLargestEdge = 1.5;  ///< nominal edge lengths that the search may go up to
+  static constexpr double kMostAskedFor = 5e6;  ///< tetrahedra
+  static constexpr double kLargestEdge = 1.5;   ///< nominal edge lengths that the search may go up to
 
   std::shared_ptr<const TriMesh> mesh_;
   UnitSurface surface_;

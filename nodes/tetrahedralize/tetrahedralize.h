@@ -45,10 +45,10 @@ struct TetrahedralizeParams {
 /// All fields of the result are filled. Nodes are ordered along a space-filling curve. The sum of
 /// insideFraction · volume equals the surface's volume up to rounding (quality.volumeError).
 ///
-/// Errors: an empty, open, non-manifold or inside-out surface or one with NaN; a gap that cannot be kept
-/// open, with its place (m) and width (m); a surface that could not be enclosed, with the place.
-/// Deterministic: the same input gives the same bits for any number of threads. Cost: a few Mesh_3 runs of
-/// O(tets) each (about a second for 5,000), plus O(triangles log triangles).
+/// Errors: more than 5 million tetrahedra asked for; an empty, open, non-manifold or inside-out surface or
+/// one with NaN; a gap that cannot be kept open, with its place (m) and width (m); a surface that could not
+/// be enclosed, with the place. Deterministic: the same input gives the same bits for any number of threads.
+/// Cost: a few Mesh_3 runs of O(tets) each (about a second for 5,000), plus O(triangles log triangles).
 Result<TetMesh> tetrahedralize(std::shared_ptr<const TriMesh> surface, const TetrahedralizeParams& params,
                                const Exec& exec);
 

@@ -2,11 +2,11 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Labeled_mesh_domain_3.h>
+#include <CGAL/Mesh_3/Slivers_exuder.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
 #include <CGAL/Mesh_criteria_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Random.h>
-#include <CGAL/exude_mesh_3.h>
 #include <CGAL/perturb_mesh_3.h>
 #include <CGAL/refine_mesh_3.h>
 
@@ -34,6 +34,31 @@ constexpr double kRadiusEdgeRatio = 2.5;  ///< proven to end from 2
 /// Thrown through CGAL, which has no other way to be stopped that does not leave half a mesh behind.
 struct Cancelled {};
 
+void throwIfCancelled(const CancelToken* cancel) {
+  if (cancel != nullptr && cancel->cancelled()) throw Cancelled{};
+}
+
+/// The smallest dihedral angle, CGAL's own criterion, which perturbation and exudation evaluate all the time:
+/// the place from which they can be stopped.
+class SliverCriterion : public CGAL::Mesh_3::Min_dihedral_angle_criterion<Triangulation> {
+  using Angle = CGAL::Mesh_3::Min_dihedral_angle_criterion<Triangulation>;
+
+ public:
+  SliverCriterion(double bound, const Triangulation& triangulation, const CancelToken* cancel)
+      : Angle(bound, triangulation), cancel_(cancel) {}
+  double operator()(Cell_handle cell) const override {
+    throwIfCancelled(cancel_);
+    return Angle::operator()(cell);
+  }
+  double operator()(const Tetrahedron_3& tet) const override {
+    throwIfCancelled(cancel_);
+    return Angle::operator()(tet);
+  }
+
+ private:
+  const CancelToken* cancel_;
+};
+
 /// A function on space in the form that Mesh_3 takes sizes in.
 struct SizeField {
   using FT = double;
@@ -41,7 +66,11 @@ struct SizeField {
   using Index = Domain::Index;
   std::function<double(const Vec3&)> size;
   double factor;
-  FT operator()(const Point_3& p, int, const Index&) const { return factor * size(toVec(p)); }
+  const CancelToken* cancel;
+  FT operator()(const Point_3& p, int, const Index&) const {
+    throwIfCancelled(cancel);
+    return factor * size(toVec(p));
+  }
 };
 
 }  // namespace
@@ -66,7 +95,7 @@ Result<VolumeMesh> VolumeMesh::refine(const VolumeToMesh& volume, const Exec& ex
     const auto field = volume.field;
     mesh.impl_->domain = std::make_unique<Domain>(
         [field, cancel = exec.cancel](const Kernel::Point_3& p) {
-          if (cancel != nullptr && cancel->cancelled()) throw Cancelled{};
+          throwIfCancelled(cancel);
           return field(toVec(p)) < 0 ? 1 : 0;
         },
         box, volume.precision / volume.box.diagonal());
@@ -75,10 +104,10 @@ Result<VolumeMesh> VolumeMesh::refine(const VolumeToMesh& volume, const Exec& ex
     for (const Vec3& p : volume.seeds) seeds.emplace_back(Kernel::Point_3(p.x(), p.y(), p.z()), onBoundary);
     mesh.impl_->complex.insert_surface_points(seeds.begin(), seeds.end());
     const Criteria criteria(option::facet_angle = kFacetAngle,
-                            option::facet_size = SizeField{volume.edgeLength, kFacetRadius},
-                            option::facet_distance = SizeField{volume.facetDistance, 1.0},
+                            option::facet_size = SizeField{volume.edgeLength, kFacetRadius, exec.cancel},
+                            option::facet_distance = SizeField{volume.facetDistance, 1.0, exec.cancel},
                             option::cell_radius_edge_ratio = kRadiusEdgeRatio,
-                            option::cell_size = SizeField{volume.edgeLength, kCellRadius});
+                            option::cell_size = SizeField{volume.edgeLength, kCellRadius, exec.cancel});
     CGAL::refine_mesh_3(mesh.impl_->complex, *mesh.impl_->domain, criteria, option::no_perturb(),
                         option::no_exude(), option::no_lloyd(), option::no_odt(), option::no_reset_c3t3(),
                         option::manifold());
@@ -95,18 +124,24 @@ Result<VolumeMesh> VolumeMesh::refine(const VolumeToMesh& volume, const Exec& ex
 std::size_t VolumeMesh::tetCount() const { return impl_->complex.number_of_cells_in_complex(); }
 
 Result<void> VolumeMesh::removeSlivers(double perturbBound, double exudeBound,
-                                       const std::function<bool(const Tetrahedra&)>& good) {
+                                       const std::function<bool(const Tetrahedra&)>& good, const Exec& exec) {
   if (!good(extract())) return {};  // will be meshed again anyway
   CGAL::get_default_random() = CGAL::Random(2);
   try {
     const Complex before = impl_->complex;
     for (const double share : {1.0, 0.7}) {
       CGAL::perturb_mesh_3(impl_->complex, *impl_->domain, option::time_limit = 0,
-                           option::sliver_bound = share * perturbBound);
+                           option::sliver_criterion = SliverCriterion(
+                               share * perturbBound, impl_->complex.triangulation(), exec.cancel));
+      throwIfCancelled(exec.cancel);
       if (good(extract())) break;
       impl_->complex = before;
     }
-    CGAL::exude_mesh_3(impl_->complex, option::time_limit = 0, option::sliver_bound = exudeBound);
+    // exude_mesh_3 takes no criterion; the class that it calls does.
+    CGAL::Mesh_3::Slivers_exuder<Complex, SliverCriterion> exuder(
+        impl_->complex, SliverCriterion(exudeBound, impl_->complex.triangulation(), exec.cancel));
+    exuder.set_time_limit(0);
+    exuder();
   } catch (const Cancelled&) {
     return cancelledError();
   } catch (const std::exception& e) {

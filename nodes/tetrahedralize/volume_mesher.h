@@ -26,7 +26,7 @@ struct Tetrahedra {
   std::vector<Tetra> tets;  ///< positively oriented
 };
 
-/// A run of Mesh_3 that can still be improved.
+/// A run of Mesh_3 that can still be improved. After a failure, or when cancelled, it can only be destroyed.
 class VolumeMesh {
  public:
   VolumeMesh();
@@ -41,7 +41,7 @@ class VolumeMesh {
   /// (degrees), without limits of time, since those would make the result depend on the clock. Perturbation
   /// may pinch the boundary: where `good` says no to what it made of a good mesh, it is taken back.
   Result<void> removeSlivers(double perturbBound, double exudeBound,
-                             const std::function<bool(const Tetrahedra&)>& good);
+                             const std::function<bool(const Tetrahedra&)>& good, const Exec& exec);
   Tetrahedra extract() const;
 
  private:

@@ -42,7 +42,9 @@ void hashValue(Hasher& hasher, const WeightField& field) {
   hasher.add(field.weight).add(field.volume);
 }
 
-std::size_t byteSize(const Impact& impact) { return sizeof impact + impact.contacts.size() * sizeof(Contact); }
+std::size_t byteSize(const Impact& impact) {
+  return sizeof impact + impact.contacts.size() * sizeof(Contact);
+}
 
 std::size_t byteSize(const EnergyField& field) {
   return (field.tetEnergy.size() + field.nodeEnergy.size()) * sizeof(double) +

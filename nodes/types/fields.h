@@ -13,10 +13,10 @@ namespace sherd {
 
 /// One contact of the first impact.
 struct Contact {
-  Vec3 point;        ///< m, in the body's rest space (where the mesh is)
-  Vec3 impulse;      ///< N·s on the body, in rest space
-  double duration;   ///< s, that the impulse is spread over
-  double radius;     ///< m, of the patch that the force is spread over
+  Vec3 point;       ///< m, in the body's rest space (where the mesh is)
+  Vec3 impulse;     ///< N·s on the body, in rest space
+  double duration;  ///< s, that the impulse is spread over
+  double radius;    ///< m, of the patch that the force is spread over
 };
 
 /// The body's rigid motion, world space: x_world = rotation · (x_rest − centreOfMass) + position.
@@ -31,7 +31,7 @@ struct RigidMotion {
 struct Impact {
   static constexpr const char* typeName = "Impact";
   bool hit = false;
-  double time = 0;  ///< s since the release
+  double time = 0;                   ///< s since the release
   Vec3 centreOfMass = Vec3::Zero();  ///< m, rest space
   std::vector<Contact> contacts;
   RigidMotion before, after;
@@ -42,9 +42,9 @@ struct EnergyField {
   static constexpr const char* typeName = "Energy";
   std::shared_ptr<const TetMesh> tets;
   Material material;
-  std::vector<double> tetEnergy;    ///< J, per tetrahedron
-  std::vector<double> nodeEnergy;   ///< J, per node: e_n, a quarter of each incident tetrahedron's
-  std::vector<Vec3> displacement;   ///< m, per node, free of rigid motion
+  std::vector<double> tetEnergy;   ///< J, per tetrahedron
+  std::vector<double> nodeEnergy;  ///< J, per node: e_n, a quarter of each incident tetrahedron's
+  std::vector<Vec3> displacement;  ///< m, per node, free of rigid motion
 };
 
 /// w_n of design section 4, point 1: β V (e/V)^α, rescaled. The only weights that later steps use.

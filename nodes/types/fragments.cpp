@@ -8,6 +8,7 @@ void hashValue(Hasher& hasher, const Fragments& f) {
   if (f.tets) hashValue(hasher, *f.tets);
   hashValue(hasher, f.material);
   hasher.add(f.positions).add(f.pieces.size()).add(f.sites).add(f.energy).add(f.gamma);
+  hasher.add(f.degreeGiven);
   hasher.bytes(f.cutCorners.data(), f.cutCorners.size() * sizeof(f.cutCorners[0]));
   for (const Piece& p : f.pieces) {
     hasher.add(p.name).add(p.cell).add(p.surface).add(p.surfaceSource).add(p.surfaceCut);

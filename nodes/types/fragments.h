@@ -17,12 +17,12 @@ using CornerWeights = Eigen::Vector3d;
 
 /// One closed, connected solid. Its surface and crack triangles together have no open edge.
 struct Piece {
-  std::string name;  ///< "piece_0001", unique, by descending volume then cell
-  Index cell = -1;   ///< the site that it came from
-  std::vector<Triangle> surface;      ///< outer skin, vertices in Fragments::positions
-  std::vector<Index> surfaceSource;   ///< per outer triangle: the source triangle that it is (part of)
-  std::vector<Index> surfaceCut;      ///< per outer triangle: entry of Fragments::cutCorners, −1 for an uncut one
-  std::vector<Triangle> crack;        ///< crack faces, counter-clockwise from outside this piece
+  std::string name;                  ///< "piece_0001", unique, by descending volume then cell
+  Index cell = -1;                   ///< the site that it came from
+  std::vector<Triangle> surface;     ///< outer skin, vertices in Fragments::positions
+  std::vector<Index> surfaceSource;  ///< per outer triangle: the source triangle that it is (part of)
+  std::vector<Index> surfaceCut;  ///< per outer triangle: entry of Fragments::cutCorners, −1 for an uncut one
+  std::vector<Triangle> crack;    ///< crack faces, counter-clockwise from outside this piece
   std::vector<Index> crackNeighbour;  ///< per crack triangle: the piece that holds its twin
   double volume = 0;                  ///< m³
   Vec3 centreOfMass = Vec3::Zero();   ///< m
@@ -30,24 +30,26 @@ struct Piece {
 };
 
 struct FractureCounts {
-  std::size_t cutTets = 0;             ///< tetrahedra with more than one label
-  std::size_t crackTriangles = 0;      ///< triangles of all sheets before clipping
-  std::size_t cutSurfaceTriangles = 0; ///< surface triangles that a sheet crosses
-  std::size_t detachedParts = 0;       ///< parts of cells that became pieces of their own
-  std::size_t mergedParts = 0;         ///< parts below the minimum volume that joined a neighbour
-  std::size_t emptyCells = 0;          ///< sites that hold no volume inside the surface
-  std::size_t forcedTriangles = 0;     ///< triangles that rounding left flat or overlapping
+  std::size_t cutTets = 0;              ///< tetrahedra with more than one label
+  std::size_t crackTriangles = 0;       ///< triangles of all sheets before clipping
+  std::size_t cutSurfaceTriangles = 0;  ///< surface triangles that a sheet crosses
+  std::size_t detachedParts = 0;        ///< parts of cells that became pieces of their own
+  std::size_t mergedParts = 0;          ///< parts below the minimum volume that joined a neighbour
+  std::size_t emptyCells = 0;           ///< sites that hold no volume inside the surface
+  std::size_t forcedTriangles = 0;      ///< triangles that rounding left flat or overlapping
 };
 
 struct Fragments {
   static constexpr const char* typeName = "Pieces";
   std::shared_ptr<const TetMesh> tets;  ///< tets->surface is the source surface
   Material material;
-  std::vector<Vec3> positions;  ///< m; the first ones are the source's, in its order
+  std::vector<Vec3> positions;                           ///< m; the first ones are the source's, in its order
   std::vector<std::array<CornerWeights, 3>> cutCorners;  ///< of the triangles made by cutting
-  std::vector<Piece> pieces;    ///< at least one
-  std::size_t sites = 1;        ///< N
-  double energy = 0, gamma = 0; ///< J·m²: E_D and the threshold (0: the degree was given)
+  std::vector<Piece> pieces;                             ///< at least one
+  std::size_t sites = 1;                                 ///< N
+  double energy = 0,
+         gamma = 0;          ///< J·m²: E_D and the threshold, which says nothing where the degree was given
+  bool degreeGiven = false;  ///< N was asked for, not found by γ
   FractureCounts counts;
 };
 

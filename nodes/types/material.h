@@ -5,9 +5,9 @@ namespace sherd {
 
 /// Isotropic, linear elastic. Defaults: stoneware.
 struct Material {
-  double density = 2400;      ///< kg/m³
-  double youngModulus = 5e10; ///< Pa
-  double poissonRatio = 0.2;  ///< in (−1, 0.5)
+  double density = 2400;       ///< kg/m³
+  double youngModulus = 5e10;  ///< Pa
+  double poissonRatio = 0.2;   ///< in (−1, 0.5)
 };
 
 }  // namespace sherd

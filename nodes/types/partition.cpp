@@ -9,7 +9,9 @@ void hashMatrix(Hasher& hasher, const Eigen::MatrixXd& m) {
   hasher.add(m.rows()).add(m.cols()).bytes(m.data(), static_cast<std::size_t>(m.size()) * sizeof(double));
 }
 
-std::size_t matrixBytes(const Eigen::MatrixXd& m) { return static_cast<std::size_t>(m.size()) * sizeof(double); }
+std::size_t matrixBytes(const Eigen::MatrixXd& m) {
+  return static_cast<std::size_t>(m.size()) * sizeof(double);
+}
 
 }  // namespace
 
@@ -21,7 +23,7 @@ void hashValue(Hasher& hasher, const Embedding& embedding) {
 
 void hashValue(Hasher& hasher, const Sites& sites) {
   hashMatrix(hasher, sites.positions);
-  hasher.add(sites.energy).add(sites.gamma);
+  hasher.add(sites.energy).add(sites.gamma).add(sites.degreeGiven);
 }
 
 void hashValue(Hasher& hasher, const Partition& partition) {
@@ -29,6 +31,7 @@ void hashValue(Hasher& hasher, const Partition& partition) {
   hashValue(hasher, partition.material);
   hashMatrix(hasher, partition.sites);
   hasher.add(partition.label).add(partition.energy).add(partition.gamma);
+  hasher.add(partition.degreeGiven);
   hasher.add(partition.iterations).add(partition.converged);
 }
 

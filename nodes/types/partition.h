@@ -18,7 +18,7 @@ struct Embedding {
   std::shared_ptr<const TetMesh> tets;
   Metric metric = Metric::Euclidean;
   Eigen::MatrixXd coordinates;  ///< d × nodes, m; column n is x̄_n
-  double diameter = 0;          ///< m, diagonal of the coordinates' bounding box: what tolerances are relative to
+  double diameter = 0;  ///< m, diagonal of the coordinates' bounding box: what tolerances are relative to
 };
 
 /// Sites p̄_j and what the search for them found.
@@ -26,7 +26,8 @@ struct Sites {
   static constexpr const char* typeName = "Sites";
   Eigen::MatrixXd positions;  ///< d × N, m, in the embedding; N ≥ 1
   double energy = 0;          ///< J·m², E_D of these sites
-  double gamma = 0;           ///< J·m², the threshold asked for; 0 when the degree was given
+  double gamma = 0;           ///< J·m², the threshold asked for; says nothing where the degree was given
+  bool degreeGiven = false;   ///< N was asked for, not found by γ
 };
 
 /// Every node's nearest site.
@@ -34,11 +35,12 @@ struct Partition {
   static constexpr const char* typeName = "Cells";
   std::shared_ptr<const Embedding> embedding;
   Material material;
-  Eigen::MatrixXd sites;      ///< d × N, m
-  std::vector<Index> label;   ///< per node, in [0, N)
-  double energy = 0;          ///< J·m², E_D
-  double gamma = 0;           ///< J·m²; 0 when the degree was given
-  int iterations = 0;         ///< Lloyd passes made
+  Eigen::MatrixXd sites;     ///< d × N, m
+  std::vector<Index> label;  ///< per node, in [0, N)
+  double energy = 0;         ///< J·m², E_D
+  double gamma = 0;          ///< J·m²; says nothing where the degree was given
+  bool degreeGiven = false;  ///< N was asked for, not found by γ
+  int iterations = 0;        ///< Lloyd passes made
   bool converged = false;
 
   std::size_t siteCount() const { return static_cast<std::size_t>(sites.cols()); }

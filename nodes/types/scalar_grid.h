@@ -1,4 +1,5 @@
-// A scalar field painted by an artist (toughness β and the like), held in an OpenVDB grid that this header hides.
+// A scalar field painted by an artist (toughness β and the like), held in an OpenVDB grid that this header
+// hides.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +24,8 @@ class ScalarGrid {
 
   const std::string& name() const;
   bool isConstant() const;
-  /// Trilinear samples at `points` (m); the grid's background outside of its active voxels. out.size() = points.size().
+  /// Trilinear samples at `points` (m); the grid's background outside of its active voxels. out.size() =
+  /// points.size().
   void sample(std::span<const Vec3> points, std::span<double> out) const;
   const Impl& impl() const { return *impl_; }
 

@@ -15,12 +15,12 @@ struct ScalarGrid::Impl {
   openvdb::FloatGrid::ConstPtr grid;  ///< null for a constant; inactive voxels hold the background
   FileFrame frame;                    ///< of the grid's world space
   double constant = 0;
-  Digest content;                     ///< of the values, the transform and the frame
+  Digest content;  ///< of the values, the transform and the frame
 };
 
-/// Wraps an OpenVDB grid whose world space lies in `frame`. Inactive voxels are set to the background first, since
-/// that is what ScalarGrid promises of them. A grid without active voxels, or whose active voxels all hold the
-/// background, becomes a constant. Cost O(stored voxels).
+/// Wraps an OpenVDB grid whose world space lies in `frame`. Inactive voxels are set to the background first,
+/// since that is what ScalarGrid promises of them. A grid without active voxels, or whose active voxels all
+/// hold the background, becomes a constant. Cost O(stored voxels).
 ScalarGrid scalarGridOf(openvdb::FloatGrid::Ptr grid, std::string name, const FileFrame& frame);
 
 }  // namespace sherd

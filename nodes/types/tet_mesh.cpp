@@ -45,9 +45,8 @@ void connectTets(TetMesh& mesh) {
       std::sort(key.begin(), key.end());
       sides.push_back({key, static_cast<Index>(t), f});
     }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.key, a.tet) < std::tie(b.key, b.tet);
-  });
+  std::sort(sides.begin(), sides.end(),
+            [](const Side& a, const Side& b) { return std::tie(a.key, a.tet) < std::tie(b.key, b.tet); });
   mesh.neighbours.assign(mesh.tets.size(), Tetra{-1, -1, -1, -1});
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     const Side &a = sides[i], &b = sides[i + 1];

@@ -23,8 +23,8 @@ struct TetMesh {
   std::shared_ptr<const TriMesh> surface;  ///< lies strictly inside the union of the tetrahedra
   std::vector<Vec3> nodes;                 ///< m; every node belongs to a tetrahedron
   std::vector<Tetra> tets;                 ///< positively oriented: det[b−a, c−a, d−a] > 0
-  std::vector<Tetra> neighbours;           ///< per tetrahedron: across face i (kTetraFace), −1 on the boundary
-  std::vector<Triangle> boundary;          ///< faces with no neighbour, counter-clockwise from outside
+  std::vector<Tetra> neighbours;   ///< per tetrahedron: across face i (kTetraFace), −1 on the boundary
+  std::vector<Triangle> boundary;  ///< faces with no neighbour, counter-clockwise from outside
 
   /// Surface triangles that touch tetrahedron t: held[heldBegin[t]] … held[heldBegin[t + 1] − 1], ascending.
   /// Never misses one; may hold one that comes within rounding of the tetrahedron.

@@ -10,7 +10,8 @@
 namespace sherd {
 
 /// How a file's coordinates relate to the program's (metres, y up, right-handed):
-/// metres = metresPerUnit · turn(file), where turn is the identity for y up and (x, y, z) → (x, z, −y) for z up.
+/// metres = metresPerUnit · turn(file), where turn is the identity for y up and (x, y, z) → (x, z, −y) for z
+/// up.
 struct FileFrame {
   enum class Up { Y, Z };
   double metresPerUnit = 1;

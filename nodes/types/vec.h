@@ -1,4 +1,5 @@
-// The small vectors and index tuples that all types share. Lengths are metres unless a comment says otherwise.
+// The small vectors and index tuples that all types share. Lengths are metres unless a comment says
+// otherwise.
 #pragma once
 
 #include <Eigen/Core>
@@ -43,8 +44,8 @@ Box boxOf(const Points& points) {
   return box;
 }
 
-/// The corners of face i of a tetrahedron, the one opposite corner i, in outward order for a positively oriented
-/// tetrahedron (det[b−a, c−a, d−a] > 0).
+/// The corners of face i of a tetrahedron, the one opposite corner i, in outward order for a positively
+/// oriented tetrahedron (det[b−a, c−a, d−a] > 0).
 inline constexpr int kTetraFace[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 /// The corners of the six edges of a tetrahedron.
 inline constexpr int kTetraEdge[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};

@@ -28,7 +28,7 @@ Error writeError(const std::string& path, int number) {
     case ENOTDIR:
       return failure(what, "remove what stands in its place, or choose another directory");
     default:
-      return failure(what);
+      return failure(what, "check that disk, or write to another directory");
   }
 }
 
@@ -49,7 +49,9 @@ class Descriptor {
   int number_;
 };
 
-bool holds(const std::string& path, std::string_view content) {
+}  // namespace
+
+bool fileHolds(const std::string& path, std::string_view content) {
   struct stat info {};
   if (::lstat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return false;
   if (static_cast<std::size_t>(info.st_size) != content.size()) return false;
@@ -65,6 +67,8 @@ bool holds(const std::string& path, std::string_view content) {
   }
   return true;
 }
+
+namespace {
 
 /// 0, or the error number.
 int writeAll(const std::string& path, std::string_view content) {
@@ -84,7 +88,7 @@ int writeAll(const std::string& path, std::string_view content) {
 std::string partialName(const std::string& path) { return path + ".partial"; }
 
 Result<FileChange> writeFileAtomically(const std::string& path, std::string_view content) {
-  if (holds(path, content)) return FileChange::Kept;
+  if (fileHolds(path, content)) return FileChange::Kept;
   const std::string partial = partialName(path);
   int error = writeAll(partial, content);
   if (error == 0 && ::rename(partial.c_str(), path.c_str()) != 0) error = errno;

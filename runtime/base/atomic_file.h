@@ -13,6 +13,9 @@ enum class FileChange {
   Kept,     ///< it held the same bytes already, and was not touched
 };
 
+/// Is `path` a regular file (no link) of exactly these bytes?
+bool fileHolds(const std::string& path, std::string_view content);
+
 /// What a file is called while it is being written. A run that is killed leaves at most this behind; the next
 /// write of the same file replaces it.
 std::string partialName(const std::string& path);

@@ -20,12 +20,12 @@ class CancelToken {
 
 enum class LogLevel { Info, Warning };
 
-/// Handed to every step. A default-constructed Exec is never cancelled and says nothing, so that a step can be
-/// called from a test as it is. Copies share the token and the callbacks; the callbacks are thread-safe.
+/// Handed to every step. A default-constructed Exec is never cancelled and says nothing, so that a step can
+/// be called from a test as it is. Copies share the token and the callbacks; the callbacks are thread-safe.
 struct Exec {
   const CancelToken* cancel = nullptr;
-  std::function<void(double)> onProgress;                        ///< share done, in [0, 1]
-  std::function<void(LogLevel, const std::string&)> onMessage;   ///< one line for the user
+  std::function<void(double)> onProgress;                       ///< share done, in [0, 1]
+  std::function<void(LogLevel, const std::string&)> onMessage;  ///< one line for the user
 
   bool cancelled() const { return cancel != nullptr && cancel->cancelled(); }
   void progress(double share) const {

@@ -18,7 +18,8 @@ struct Digest {
   std::string hex() const;  ///< 32 lower-case hexadecimal digits
 };
 
-/// Feeds bytes into one digest. Every `add` also feeds the length, so that ("ab","c") differs from ("a","bc").
+/// Feeds bytes into one digest. Every `add` also feeds the length, so that ("ab","c") differs from
+/// ("a","bc").
 class Hasher {
  public:
   Hasher();
@@ -35,8 +36,7 @@ class Hasher {
     return bytes(&number, sizeof number);
   }
   template <class T>
-    requires std::is_integral_v<T>
-  Hasher& add(T number) {
+  requires std::is_integral_v<T> Hasher& add(T number) {
     const auto wide = static_cast<std::int64_t>(number);
     return bytes(&wide, sizeof wide);
   }

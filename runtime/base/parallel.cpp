@@ -44,8 +44,8 @@ void detail::forBlocks(std::size_t n, std::size_t grain, const CancelToken* canc
     for (std::size_t block = 0; block < blocks; ++block) runBlock(block);
     return;
   }
-  // A thread that waits here may pick up other tasks of the arena (isolated work would leave it idle), so bodies
-  // hold no locks.
+  // A thread that waits here may pick up other tasks of the arena (isolated work would leave it idle), so
+  // bodies hold no locks.
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 1), [&](const auto& range) {
     for (std::size_t block = range.begin(); block != range.end(); ++block) runBlock(block);
   });
@@ -120,7 +120,7 @@ void detail::forBlocks(std::size_t n, std::size_t grain, const CancelToken* canc
 struct TaskGroup::Impl {
   std::mutex mutex;
   std::condition_variable changed;
-  std::deque<std::function<void()>> queue;
+  std::deque<std::function<void()> > queue;
   std::size_t unfinished = 0;
   FirstException error;
 

@@ -1,8 +1,9 @@
 // The one façade for threads. Backed by oneTBB, or by std::thread when built with SHERD_PARALLEL=std (thread
 // sanitizer builds); the choice is made in parallel.cpp, the only file that includes TBB.
 //
-// Determinism: work is cut into blocks whose borders depend on (n, grain) alone, never on the number of threads;
-// sums add the blocks' results in the order of the blocks. A body must write only to what its indices own.
+// Determinism: work is cut into blocks whose borders depend on (n, grain) alone, never on the number of
+// threads; sums add the blocks' results in the order of the blocks. A body must write only to what its
+// indices own.
 #pragma once
 
 #include <cstddef>
@@ -34,9 +35,9 @@ BlockRef blockRef(F& body) {
 }
 }  // namespace detail
 
-/// Calls body(begin, end) for consecutive blocks of `grain` indices (the last may be shorter) covering [0, n).
-/// When exec is cancelled the remaining blocks are left out: check exec.cancelled() afterwards. An exception
-/// thrown by a body is rethrown here after the running blocks end.
+/// Calls body(begin, end) for consecutive blocks of `grain` indices (the last may be shorter) covering [0,
+/// n). When exec is cancelled the remaining blocks are left out: check exec.cancelled() afterwards. An
+/// exception thrown by a body is rethrown here after the running blocks end.
 template <class F>
 void parallelFor(const Exec& exec, std::size_t n, std::size_t grain, F&& body) {
   detail::forBlocks(n, grain, exec.cancel, detail::blockRef(body));

@@ -70,8 +70,8 @@ class [[nodiscard]] Result<void> {
 }  // namespace sherd
 
 /// Returns the error of `expr` from the enclosing function, or goes on.
-#define SHERD_CHECK(expr)                                       \
-  do {                                                          \
+#define SHERD_CHECK(expr)                                                         \
+  do {                                                                            \
     if (auto sherdResult = (expr); !sherdResult.ok()) return sherdResult.error(); \
   } while (false)
 

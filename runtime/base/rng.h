@@ -1,5 +1,5 @@
-// Counter-based random numbers (Philox 2x64-10, Salmon et al., SC 2011): number k of stream s under seed r is a
-// pure function of (r, s, k), so that results depend neither on the order of calls nor on threads.
+// Counter-based random numbers (Philox 2x64-10, Salmon et al., SC 2011): number k of stream s under seed r is
+// a pure function of (r, s, k), so that results depend neither on the order of calls nor on threads.
 #pragma once
 
 #include <array>

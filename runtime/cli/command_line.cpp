@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 
 #include "base/parallel.h"
+#include "cli/json_events.h"
+#include "cli/usage.h"
 #include "cli/verbs.h"
+#include "graph/suggest.h"
 #include "plugin/loader.h"
 
 namespace sherd {
@@ -37,7 +41,6 @@ struct Commands {
   Commands() {
     app.set_version_flag("--version", std::string("sherd ") + SHERD_VERSION);
     app.require_subcommand(1);
-    app.failure_message(CLI::FailureMessage::simple);
     addRun();
     addCheck();
     nodesApp = app.add_subcommand("nodes", "list the node types, or tell all about one");
@@ -74,38 +77,86 @@ struct Commands {
   }
 };
 
+/// Says what ended the program before a verb could; to a reader of events as such, "done" being the last.
+int refuse(const Error& error, bool events, Console& console, ExitCode code = kWrongInput) {
+  Diagnostics diagnostics;
+  diagnostics.add({}, "", error);
+  printDiagnostics(diagnostics, console.err);
+  if (events) {
+    jsonErrors(diagnostics, console.out);
+    jsonDone(false, 0, {}, console.out);
+  }
+  return code;
+}
+
+std::vector<std::string> optionNames(const CLI::App& verb) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : verb.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+/// What the parser found wrong.
+Error parseError(const Commands& commands, const CLI::ParseError& error) {
+  for (const CLI::App* verb : {commands.runApp, commands.checkApp, commands.nodesApp}) {
+    if (!verb->parsed()) continue;
+    if (const std::vector<std::string> left = verb->remaining(); !left.empty())
+      return unexpectedArgument(verb->get_name(), left.front(), optionNames(*verb));
+    const bool needsGraph = verb != commands.nodesApp && verb->get_option("GRAPH")->count() == 0;
+    if (needsGraph && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
+      return missingGraph(verb->get_name());
+    return Error{
+        error.what(), "`sherd " + verb->get_name() + " --help` tells what it takes", {}, Error::Kind::Input};
+  }
+  return Error{error.what(), "`sherd --help` tells what it takes", {}, Error::Kind::Input};
+}
+
+Result<Environment> makeEnvironment() {
+  const std::string variable = environmentVariable("SHERD_ASSETS");
+  std::error_code problem;
+  if (!variable.empty() && !std::filesystem::is_directory(variable, problem))
+    return Error{"the environment variable SHERD_ASSETS is " + inQuotes(variable) + ", which is no directory",
+                 "set it to the folder of assets, or unset it to use those that come with sherd",
+                 {},
+                 Error::Kind::Input};
+  return Environment::ofProcess(findAssets(variable, programDirectory()));
+}
+
 int runVerbOf(Commands& commands, Console& console) {
   setThreadLimit(commands.threads);
   const auto registry = loadNodes();
-  if (!registry.ok()) {
-    console.err << registry.error().text() << '\n';
-    return kWrongInput;
-  }
-  const Environment environment =
-      Environment::ofProcess(findAssets(environmentVariable("SHERD_ASSETS"), programDirectory()));
+  if (!registry.ok()) return refuse(registry.error(), commands.run.json, console);
+  if (commands.nodesApp->parsed()) return nodesVerb(commands.nodes, *registry, console);
+  const auto found = makeEnvironment();
+  if (!found.ok()) return refuse(found.error(), commands.run.json, console);
+  const Environment& environment = *found;
   if (commands.runApp->parsed()) return runVerb(commands.run, *registry, environment, console);
-  if (commands.checkApp->parsed()) return checkVerb(commands.check, *registry, environment, console);
-  return nodesVerb(commands.nodes, *registry, console);
+  return checkVerb(commands.check, *registry, environment, console);
 }
 
 }  // namespace
 
 int runCommandLine(const std::vector<std::string>& arguments, Console& console) {
+  const bool events = asksForEvents(arguments);
   try {
+    if (const auto verb = checkVerbName(arguments); !verb.ok()) return refuse(verb.error(), events, console);
     Commands commands;
     try {
       std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // as CLI11 takes them
       commands.app.parse(std::move(reversed));
+    } catch (const CLI::Success& help) {
+      return commands.app.exit(help, console.out, console.err) == 0 ? kOk : kWrongInput;
     } catch (const CLI::ParseError& e) {
-      return commands.app.exit(e, console.out, console.err) == 0 ? kOk : kWrongInput;
+      return refuse(parseError(commands, e), events, console);
     }
     return runVerbOf(commands, console);
   } catch (const std::bad_alloc&) {
-    console.err << "out of memory\n";
+    return refuse(failure("out of memory", "close other programs or use a smaller model"), events, console,
+                  kNodeFailed);
   } catch (const std::exception& e) {
-    console.err << "a mistake in this program: " << e.what() << "; please report it\n";
+    return refuse(failure(std::string("a mistake in this program: ") + e.what(), "please report it"), events,
+                  console, kNodeFailed);
   }
-  return kNodeFailed;
 }
 
 }  // namespace sherd

@@ -1,5 +1,6 @@
 // `run --json`: one object a line.
-//   {"event":"error","message":…}                          what is wrong with graph or command line
+//   {"event":"error","message":…}                          what is wrong with graph or command line, also
+//                                                          where that can't be parsed but has --json
 //   {"event":"node","name":…,"type":…,"state":…,"ms":…,"threads":…,"message":…}
 //   {"event":"done","ok":…,"ms":…,"outputs":[files]}       always last
 #pragma once

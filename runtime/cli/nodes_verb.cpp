@@ -135,7 +135,7 @@ int nodesVerb(const NodesOptions& options, const Registry& registry, Console& co
       std::vector<std::string> names;
       for (const NodeType* known : types) names.push_back(known->name);
       console.err << "there is no node type " << inQuotes(options.type) << "; "
-                  << suggestion(options.type, names, "node types") << '\n';
+                  << suggestion(options.type, names, "node types", "sherd nodes") << '\n';
       return kWrongInput;
     }
     types = {type};

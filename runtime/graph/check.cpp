@@ -87,10 +87,12 @@ class Checker {
 
   /// A suggestion compares with all names; a large graph with many errors has to do without at some point.
   std::string nearNode(const std::string& name) {
-    if (nodeNames_.size() > comparisonsLeft_) return {};
+    if (nodeNames_.size() > comparisonsLeft_) return listing(nodeNames_, "nodes");
     comparisonsLeft_ -= nodeNames_.size();
     return suggestion(name, nodeNames_, "nodes");
   }
+
+  static std::string commandFor(const NodeType& type) { return "sherd nodes " + type.name; }
 
   const TypeNames& namesOf(const NodeType& type) {
     auto& names = typeNames_[&type];
@@ -108,20 +110,21 @@ class Checker {
       std::vector<std::string> names;
       for (const NodeType* known : registry_.all()) names.push_back(known->name);
       diagnostics_.add(entry.typeOrigin, entry.name, "there is no node type " + inQuotes(entry.type),
-                       suggestion(entry.type, names, "node types"));
+                       suggestion(entry.type, names, "node types", "sherd nodes"));
       return;
     }
+    // Also of another version: what has to change in the node is told in the same go.
+    node.type = type;
+    if (entry.version == type->version || entry.version == NodeEntry::kNoVersion) return;
     const std::string current = inQuotes(type->name + '@' + std::to_string(type->version));
-    if (entry.version == type->version)
-      node.type = type;
-    else if (entry.version == 0)
+    if (entry.version == 0)
       diagnostics_.add(entry.typeOrigin, entry.name, inQuotes(entry.type) + " names no version",
                        "write " + current);
     else if (entry.version > type->version)
       diagnostics_.add(
           entry.typeOrigin, entry.name,
           inQuotes(entry.type + '@' + std::to_string(entry.version)) + " is newer than this program",
-          "it knows " + current);
+          "write " + current + ", or update sherd");
     else
       diagnostics_.add(
           entry.typeOrigin, entry.name,
@@ -139,7 +142,7 @@ class Checker {
         if (names.params.contains(o.param)) return true;
         diagnostics_.add({o.assignment.source, 0, 0}, graph_.nameOf(i, o.param),
                          type->name + " has no parameter " + inQuotes(o.param),
-                         suggestion(o.param, names.paramList, "parameters"));
+                         suggestion(o.param, names.paramList, "parameters", commandFor(*type)));
         return false;
       };
       std::erase_if(list, [&](const Override& o) { return !isKnown(o); });
@@ -168,7 +171,7 @@ class Checker {
         known.insert(known.end(), names.paramList.begin(), names.paramList.end());
         diagnostics_.add(link.origin, node.name + '.' + link.port,
                          node.type->name + " has no input " + inQuotes(link.port),
-                         suggestion(link.port, known, "inputs and parameters"));
+                         suggestion(link.port, known, "inputs and parameters", commandFor(*node.type)));
       }
     }
     for (std::size_t p = 0; p < inputs.size(); ++p) wireInput(i, node.type->inputs[p], inputs[p]);
@@ -179,7 +182,7 @@ class Checker {
     Graph::Node& node = graph_.nodes[i];
     const std::string where = node.name + '.' + port.name;
     if (link == nullptr) {
-      if (port.required)
+      if (port.required && !file_.nodes[i].inIsUnread)
         diagnostics_.add(node.origin, where, "the input is not connected",
                          "wire an output of type " + port.type + " to it");
       return;
@@ -245,7 +248,7 @@ class Checker {
         output = &type->outputs[found->second];
       else
         diagnostics_.add(link.origin, where, type->name + " has no output " + inQuotes(link.output),
-                         suggestion(link.output, names.outputList, "outputs"));
+                         suggestion(link.output, names.outputList, "outputs", commandFor(*type)));
     }
     return from;
   }
@@ -262,8 +265,9 @@ class Checker {
       if (found == names.params.end())
         diagnostics_.add(
             setting.origin, where, node.type->name + " has no parameter " + inQuotes(setting.name),
-            names.inputs.contains(setting.name) ? "it is an input: wire it in \"in\""
-                                                : suggestion(setting.name, names.paramList, "parameters"));
+            names.inputs.contains(setting.name)
+                ? "it is an input: wire it in \"in\""
+                : suggestion(setting.name, names.paramList, "parameters", commandFor(*node.type)));
       else if (isOverridden(static_cast<int>(i), setting.name))
         continue;
       else if (!given.insert(setting.name).second)
@@ -279,7 +283,7 @@ class Checker {
     for (const ParamInfo& info : node.type->params) {
       if (!node.params.contains(info.name))
         node.params[info.name] = defaultParam(info, file_.source->directory);
-      if (info.required && !given.contains(info.name))
+      if (info.required && !given.contains(info.name) && !entry.inIsUnread && !entry.paramsAreUnread)
         diagnostics_.add(node.origin, node.name + '.' + info.name, "the parameter is missing",
                          "it would have to be " + expectation(info));
     }

@@ -17,13 +17,21 @@ Error wrong(std::string what, std::string remedy) {
   return Error{std::move(what), std::move(remedy), {}, Error::Kind::Input};
 }
 
+/// The uppermost directory of a path that isn't there: where the path goes wrong.
+fs::path firstMissing(fs::path folder) {
+  std::error_code problem;
+  while (folder.has_relative_path() && !fs::exists(folder.parent_path(), problem))
+    folder = folder.parent_path();
+  return folder;
+}
+
 /// The files beside a missing one, for a suggestion.
 std::string nearFile(const fs::path& path) {
   constexpr std::size_t kMostRead = 2000;
   std::error_code problem;
   const fs::path folder = path.parent_path();
   if (!fs::is_directory(folder, problem))
-    return "there is no directory " + inQuotes(folder.string()) + " either";
+    return "correct the path: there is no directory " + inQuotes(firstMissing(folder).string()) + " either";
   std::vector<std::string> names;
   for (fs::directory_iterator it(folder, problem), end; !problem && it != end && names.size() < kMostRead;
        it.increment(problem))

@@ -65,7 +65,9 @@ class Reader {
     const JsonValue* format = root.find("format");
     if (format == nullptr)
       diagnostics_.add(root.origin, "", "the key \"format\" is missing", "add \"format\": 1");
-    else if (format->kind != JsonValue::Kind::Integer || format->integer != 1)
+    else if (format->kind != JsonValue::Kind::Integer)
+      diagnostics_.add(format->origin, "format", "this is " + describe(*format), "write \"format\": 1");
+    else if (format->integer != 1)
       diagnostics_.add(format->origin, "format", "the format " + describe(*format) + " is unknown",
                        "this program reads format 1");
   }
@@ -159,11 +161,12 @@ class Reader {
     if (problem == std::errc() && stop == end && node.version > 0) return;
     diagnostics_.add(value.origin, node.name, inQuotes(value.text) + " names no version of a type",
                      "a whole number follows the @: " + inQuotes(node.type + "@1"));
-    node.type.clear();
+    node.version = NodeEntry::kNoVersion;
   }
 
   void readLinks(const JsonValue& value, NodeEntry& node) {
-    if (!expect(value, JsonValue::Kind::Object, node.name)) return;
+    node.inIsUnread = !expect(value, JsonValue::Kind::Object, node.name + ".in");
+    if (node.inIsUnread) return;
     for (const JsonMember& member : value.members) {
       const std::string where = node.name + '.' + member.key;
       // A link that can't be read is kept without a node: its port is not also unconnected.
@@ -182,7 +185,8 @@ class Reader {
   }
 
   void readParams(const JsonValue& value, NodeEntry& node) {
-    if (!expect(value, JsonValue::Kind::Object, node.name)) return;
+    node.paramsAreUnread = !expect(value, JsonValue::Kind::Object, node.name + ".params");
+    if (node.paramsAreUnread) return;
     for (const JsonMember& member : value.members)
       node.params.push_back({member.key, member.origin, member.value});
   }
@@ -221,7 +225,8 @@ GraphFile readGraphFile(const std::string& path, Diagnostics& diagnostics) {
     file.read(block, sizeof block);
     text.append(block, static_cast<std::size_t>(file.gcount()));
   }
-  if (file.bad()) return refuse("the graph can't be read to its end", "");
+  if (file.bad())
+    return refuse("the graph can't be read to its end", "check the disk and copy the file again");
   if (text.size() > kLargestFile) return refuse("the file is larger than 64 MB", "this is no graph file");
   return readGraph(text, source, diagnostics);
 }

@@ -20,7 +20,7 @@ struct Setting {
 /// "port": "node" or "node.output".
 struct LinkEntry {
   std::string port;
-  Origin origin;  ///< of the link's text
+  Origin origin;       ///< of the link's text
   std::string node;    ///< empty where the text is no link, which then has been reported
   std::string output;  ///< empty: the node's first
 };
@@ -29,10 +29,13 @@ struct NodeEntry {
   std::string name;
   Origin origin;
   std::string type;
-  int version = 0;  ///< N of Type@N
+  static constexpr int kNoVersion = -1;
+  int version = 0;  ///< N of Type@N; 0: none is written; kNoVersion: it can't be read, which was reported
   Origin typeOrigin;
   std::vector<LinkEntry> in;
   std::vector<Setting> params;
+  /// "in" or "params" can't be read, which was reported: what they would give is not also missing.
+  bool inIsUnread = false, paramsAreUnread = false;
 };
 
 struct TargetEntry {

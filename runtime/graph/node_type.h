@@ -5,10 +5,10 @@
 //     return NodeBuilder<CvdParams>("CVD", 1, "Places the cells that the body breaks into.")
 //         .input<WeightField>("weights", "what each node weighs")
 //         .optionalInput<Sites>("sites", "sites to start from")
-//         .integer("degree", &CvdParams::degree, {.min = 0, .help = "number of sites; 0: as many as `sites` has"})
-//         .choice("labels", &CvdParams::labels, {{"exact", Labels::Exact}, {"flood", Labels::Flood}}, "…")
-//         .output<Partition>("cells", "every node's nearest site")
-//         .run([](const CvdParams& params, NodeIo& io) -> Result<void> {
+//         .integer("degree", &CvdParams::degree, {.min = 0, .help = "number of sites; 0: as many as `sites`
+//         has"}) .choice("labels", &CvdParams::labels, {{"exact", Labels::Exact}, {"flood", Labels::Flood}},
+//         "…") .output<Partition>("cells", "every node's nearest site") .run([](const CvdParams& params,
+//         NodeIo& io) -> Result<void> {
 //           SHERD_ASSIGN(Partition cells, cvd(*io.in<WeightField>("weights"), …, params, io.exec()));
 //           io.out("cells", std::move(cells));
 //           return {};
@@ -38,7 +38,7 @@ enum class ParamKind {
   Boolean,
   Integer,
   Number,
-  Vector3,          ///< three numbers
+  Vector3,  ///< three numbers
   Text,
   Choice,           ///< one of a list of words
   InputFile,        ///< a file that is read: resolved to an absolute path; its content enters the key
@@ -49,12 +49,12 @@ enum class ParamKind {
 struct ParamInfo {
   std::string name;
   ParamKind kind = ParamKind::Number;
-  std::string unit;  ///< "m", "kg/m³", …; empty for a pure number
-  ParamValue fallback;                               ///< the default
+  std::string unit;                                       ///< "m", "kg/m³", …; empty for a pure number
+  ParamValue fallback;                                    ///< the default
   double min = -std::numeric_limits<double>::infinity();  ///< for numbers, per component for vectors
   double max = std::numeric_limits<double>::infinity();
-  bool openMin = false, openMax = false;             ///< the limit itself is not allowed
-  bool required = false;                             ///< has no default: must be set or wired
+  bool openMin = false, openMax = false;  ///< the limit itself is not allowed
+  bool required = false;                  ///< has no default: must be set or wired
   std::vector<std::string> choices;
   std::string help;
 };
@@ -166,10 +166,12 @@ class NodeBuilder {
   }
   /// `member` may be any integral type; values are range-checked against min and max before.
   template <class I>
-    requires(std::is_integral_v<I> && !std::is_same_v<I, bool>)
-  NodeBuilder& integer(std::string name, I P::*member, NumberOptions options) {
-    return add(std::move(name), ParamKind::Integer, static_cast<std::int64_t>(P{}.*member), std::move(options),
-               [member](P& p, const ParamValue& v) { p.*member = static_cast<I>(std::get<std::int64_t>(v)); });
+  requires(std::is_integral_v<I> && !std::is_same_v<I, bool>) NodeBuilder& integer(std::string name,
+                                                                                   I P::*member,
+                                                                                   NumberOptions options) {
+    return add(
+        std::move(name), ParamKind::Integer, static_cast<std::int64_t>(P{}.*member), std::move(options),
+        [member](P& p, const ParamValue& v) { p.*member = static_cast<I>(std::get<std::int64_t>(v)); });
   }
   NodeBuilder& boolean(std::string name, bool P::*member, std::string help) {
     return add(std::move(name), ParamKind::Boolean, P{}.*member, {.unit = {}, .help = std::move(help)},
@@ -228,7 +230,8 @@ class NodeBuilder {
  private:
   using Setter = std::function<void(P&, const ParamValue&)>;
 
-  NodeBuilder& add(std::string name, ParamKind kind, ParamValue fallback, NumberOptions options, Setter setter) {
+  NodeBuilder& add(std::string name, ParamKind kind, ParamValue fallback, NumberOptions options,
+                   Setter setter) {
     setters_.emplace_back(name, std::move(setter));
     ParamInfo info;
     info.name = std::move(name);

@@ -9,7 +9,55 @@ namespace {
 constexpr std::size_t kLongestWord = 64;  // longer ones are not typing errors, and would cost quadratic time
 constexpr std::size_t kMostListed = 12;
 
+constexpr std::size_t kShortestPart = 3;  // fewer letters are in too many words to mean anything
+constexpr std::size_t kLongestPart = 24;  // longer ones are not compared with the beginnings of all words
+
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+std::string lowered(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(), lower);
+  return result;
+}
+
+std::size_t largestDistance(std::string_view word) { return std::max<std::size_t>(1, word.size() / 3); }
+
+/// Whether the candidate, cut to about the word's length, is close to it: "densty", "density_of_air". A slip
+/// in the first letter is rare, and asking for it spares most of the comparisons.
+bool beginsLike(std::string_view candidate, std::string_view word) {
+  if (word.size() <= kShortestPart || word.size() > kLongestPart || candidate.size() <= word.size() ||
+      candidate[0] != word[0])
+    return false;
+  const std::size_t limit = std::min<std::size_t>(largestDistance(word), 2);
+  const std::size_t longest = std::min(candidate.size(), word.size() + limit);
+  for (std::size_t size = word.size() - limit; size <= longest; ++size)
+    if (editDistance(word, candidate.substr(0, size)) <= limit) return true;
+  return false;
+}
+
+/// How much of a part word and candidate have in common; 0 is best.
+enum Part { Begins, Contains, BeginsLike, MakesUp, None };
+
+Part partOf(const std::string& word, const std::string& candidate) {
+  if (word.size() < kShortestPart || candidate.size() < kShortestPart) return None;
+  if (const std::size_t where = candidate.find(word); where != std::string::npos)
+    return where == 0 ? Begins : Contains;
+  if (beginsLike(candidate, word)) return BeginsLike;
+  return 2 * candidate.size() >= word.size() && word.find(candidate) != std::string::npos ? MakesUp : None;
+}
+
+std::string withCommonPart(std::string_view word, const std::vector<std::string>& known) {
+  const std::string wanted = lowered(word);
+  Part best = None;
+  std::string found;
+  for (const std::string& candidate : known) {
+    const Part part = partOf(wanted, lowered(candidate));
+    if (part >= best) continue;
+    best = part;
+    found = candidate;
+  }
+  return found;
+}
 
 }  // namespace
 
@@ -32,7 +80,7 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 
 std::string closest(std::string_view word, const std::vector<std::string>& known) {
   if (word.empty() || word.size() > kLongestWord) return {};
-  const std::size_t limit = std::max<std::size_t>(1, word.size() / 3);
+  const std::size_t limit = largestDistance(word);
   std::size_t best = std::numeric_limits<std::size_t>::max();
   std::string found;
   for (const std::string& candidate : known) {
@@ -44,15 +92,23 @@ std::string closest(std::string_view word, const std::vector<std::string>& known
       found = candidate;
     }
   }
-  return found;
+  return found.empty() ? withCommonPart(word, known) : found;
 }
 
-std::string suggestion(std::string_view word, const std::vector<std::string>& known, std::string_view kind) {
+std::string suggestion(std::string_view word, const std::vector<std::string>& known, std::string_view kind,
+                       std::string_view command) {
   const std::string near = closest(word, known);
   if (!near.empty()) return "did you mean " + inQuotes(near) + "?";
+  return listing(known, kind, command);
+}
+
+std::string listing(const std::vector<std::string>& known, std::string_view kind, std::string_view command) {
   if (known.empty()) return "there are no " + std::string(kind);
-  if (known.size() > kMostListed) return {};
-  return "the known " + std::string(kind) + " are " + quotedList(known);
+  const std::string list = "the known " + std::string(kind) + " are ";
+  if (known.size() <= kMostListed) return list + quotedList(known);
+  if (!command.empty()) return '`' + std::string(command) + "` lists the known " + std::string(kind);
+  return list + quotedList({known.begin(), known.begin() + kMostListed}) + " and " +
+         std::to_string(known.size() - kMostListed) + " more";
 }
 
 std::string quotedList(const std::vector<std::string>& words) {

@@ -22,41 +22,57 @@ struct ValueType {
 template <class T>
 struct ScalarName;
 template <>
-struct ScalarName<bool> { static constexpr const char* value = "Boolean"; };
+struct ScalarName<bool> {
+  static constexpr const char* value = "Boolean";
+};
 template <>
-struct ScalarName<std::int64_t> { static constexpr const char* value = "Integer"; };
+struct ScalarName<std::int64_t> {
+  static constexpr const char* value = "Integer";
+};
 template <>
-struct ScalarName<double> { static constexpr const char* value = "Number"; };
+struct ScalarName<double> {
+  static constexpr const char* value = "Number";
+};
 template <>
-struct ScalarName<std::string> { static constexpr const char* value = "String"; };
+struct ScalarName<std::string> {
+  static constexpr const char* value = "String";
+};
 
 template <class T>
-concept ScalarValue = requires { ScalarName<T>::value; };
+concept ScalarValue = requires {
+  ScalarName<T>::value;
+};
 
 template <class T>
 constexpr const char* valueTypeName() {
-  if constexpr (ScalarValue<T>) return ScalarName<T>::value;
-  else return T::typeName;
+  if constexpr (ScalarValue<T>)
+    return ScalarName<T>::value;
+  else
+    return T::typeName;
 }
 
 /// The description of T. T is a scalar, or has T::typeName and, by argument-dependent look-up,
 /// hashValue(Hasher&, const T&) and byteSize(const T&).
 template <class T>
 const ValueType& valueType() {
-  static const ValueType type{
-      valueTypeName<T>(),
-      [](const void* p) {
-        Hasher hasher;
-        hasher.add(std::string_view(valueTypeName<T>()));
-        if constexpr (std::is_same_v<T, std::string>) hasher.add(std::string_view(*static_cast<const T*>(p)));
-        else if constexpr (ScalarValue<T>) hasher.add(*static_cast<const T*>(p));
-        else hashValue(hasher, *static_cast<const T*>(p));
-        return hasher.digest();
-      },
-      [](const void* p) -> std::size_t {
-        if constexpr (ScalarValue<T>) return sizeof(T);
-        else return byteSize(*static_cast<const T*>(p));
-      }};
+  static const ValueType type{valueTypeName<T>(),
+                              [](const void* p) {
+                                Hasher hasher;
+                                hasher.add(std::string_view(valueTypeName<T>()));
+                                if constexpr (std::is_same_v<T, std::string>)
+                                  hasher.add(std::string_view(*static_cast<const T*>(p)));
+                                else if constexpr (ScalarValue<T>)
+                                  hasher.add(*static_cast<const T*>(p));
+                                else
+                                  hashValue(hasher, *static_cast<const T*>(p));
+                                return hasher.digest();
+                              },
+                              [](const void* p) -> std::size_t {
+                                if constexpr (ScalarValue<T>)
+                                  return sizeof(T);
+                                else
+                                  return byteSize(*static_cast<const T*>(p));
+                              }};
   return type;
 }
 

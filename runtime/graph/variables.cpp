@@ -128,11 +128,13 @@ const Expanded* Variables::lookUp(const std::string& name, const Origin& origin,
     return nullptr;
   }
   constexpr std::size_t kMostSuggestions = 100;  // each compares with all names
-  std::vector<std::string> names{"ASSETS"};
-  if (diagnostics_.count() < kMostSuggestions)
+  std::string remedy = "define it in \"vars\"";
+  if (diagnostics_.count() < kMostSuggestions) {
+    std::vector<std::string> names{"ASSETS"};
     for (const auto& [known, variable] : variables_) names.push_back(known);
-  diagnostics_.add(origin, where, "there is no variable " + inQuotes(name),
-                   suggestion(name, names, "variables"));
+    remedy = suggestion(name, names, "variables");
+  }
+  diagnostics_.add(origin, where, "there is no variable " + inQuotes(name), remedy);
   return nullptr;
 }
 

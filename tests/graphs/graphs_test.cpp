@@ -12,7 +12,8 @@ const std::string kAssets = SHERD_SOURCE_DIR "/assets/";
 const std::string kMeshes = SHERD_SOURCE_DIR "/../shared/meshes/";
 const std::string kQuickPicture = " --set picture.width=120 --set picture.height=60 --set picture.samples=1";
 
-void expectBroken(const std::string& directory, const std::string& source, std::size_t least, std::size_t most) {
+void expectBroken(const std::string& directory, const std::string& source, std::size_t least,
+                  std::size_t most) {
   const ExportedReport report = measureExported(directory, source);
   EXPECT_GE(report.pieces, least);
   EXPECT_LE(report.pieces, most);
@@ -34,8 +35,8 @@ TEST(Graphs, AllPassCheck) {
 
 TEST(Graphs, MushroomDropBreaks) {
   const ScratchDirectory scratch;
-  const ProgramRun run =
-      runProgram("run '" + kGraphs + "mushroom_drop.json' --var out='" + scratch.file("a") + "'" + kQuickPicture);
+  const ProgramRun run = runProgram("run '" + kGraphs + "mushroom_drop.json' --var out='" +
+                                    scratch.file("a") + "'" + kQuickPicture);
   ASSERT_EQ(run.exitCode, 0) << run.output;
   expectBroken(scratch.file("a"), kAssets + "mushroom.obj", 10, 60);
   EXPECT_GT(std::filesystem::file_size(scratch.file("a/preview.png")), 500u);
@@ -47,8 +48,8 @@ TEST(Graphs, SameBytesWithOneAndTwoThreadsAndInTwoRuns) {
   for (const char* options : {" --threads 1", " --threads 2", " --threads 2"}) {
     const std::string out = scratch.file("same");
     std::filesystem::remove_all(out);
-    const ProgramRun run =
-        runProgram("run '" + kGraphs + "mushroom_drop.json' --var out='" + out + "'" + kQuickPicture + options);
+    const ProgramRun run = runProgram("run '" + kGraphs + "mushroom_drop.json' --var out='" + out + "'" +
+                                      kQuickPicture + options);
     ASSERT_EQ(run.exitCode, 0) << run.output;
     const auto files = filesBelow(out);
     EXPECT_GT(files.size(), 20u);
@@ -60,8 +61,9 @@ TEST(Graphs, SameBytesWithOneAndTwoThreadsAndInTwoRuns) {
 
 TEST(Graphs, FewerPiecesAfterMoreLeaveNoStaleFilesAndTouchNothingElse) {
   const ScratchDirectory scratch;
-  const std::string out = scratch.file("pieces"), run = "run '" + kGraphs + "mushroom_drop.json' --target all" + kQuickPicture +
-                                                      " --var out='" + out + "' --var degree=";
+  const std::string out = scratch.file("pieces"), run = "run '" + kGraphs +
+                                                        "mushroom_drop.json' --target all" + kQuickPicture +
+                                                        " --var out='" + out + "' --var degree=";
   ASSERT_EQ(runProgram(run + "30").exitCode, 0);
   EXPECT_GE(measureExported(out, kAssets + "mushroom.obj").pieces, 30u);
   std::ofstream(out + "/notes.txt") << "mine";
@@ -96,10 +98,16 @@ TEST_P(BadInput, IsRefusedByName) {
   std::ofstream(scratch.file("empty.obj"));
   std::ofstream(scratch.file("words.obj")) << "this is no mesh\n";
   std::ofstream(scratch.file("open.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-  std::ofstream(scratch.file("nan.obj")) << "v 0 0 nan\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+  std::ofstream(scratch.file("nan.obj"))
+      << "v 0 0 nan\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+  const std::string tetra = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+  std::ofstream(scratch.file("crossing.obj"))
+      << tetra << "v .1 .1 .1\nv 1.1 .1 .1\nv .1 1.1 .1\nv .1 .1 1.1\nf 5 7 6\nf 5 6 8\nf 6 7 8\nf 7 5 8\n";
+  std::ofstream(scratch.file("nonmanifold.obj"))
+      << tetra << "v 0 -1 0\nv 1 0 -1\nf 1 2 5\nf 1 6 2\nf 1 5 6\nf 2 6 5\n";
   std::ofstream(scratch.file("file")) << "not a directory\n";
-  const ProgramRun run = runProgram("run '" + kGraphs + "mushroom_drop.json' --var out='" + scratch.file("out") + "' " +
-                                    GetParam().arguments,
+  const ProgramRun run = runProgram("run '" + kGraphs + "mushroom_drop.json' --var out='" +
+                                        scratch.file("out") + "' " + GetParam().arguments,
                                     "cd '" + scratch.file("") + "' &&");
   EXPECT_EQ(run.exitCode, GetParam().exitCode) << run.output;
   EXPECT_NE(run.output.find(GetParam().says), std::string::npos) << run.output;
@@ -112,6 +120,9 @@ INSTANTIATE_TEST_SUITE_P(
                     BadCase{"NoMesh", "--var mesh=words.obj", 1, "words.obj"},
                     BadCase{"OpenMesh", "--var mesh=open.obj", 1, "open"},
                     BadCase{"NotANumber", "--var mesh=nan.obj", 1, "NaN"},
+                    BadCase{"SelfIntersecting", "--var mesh=crossing.obj", 1, "intersect"},
+                    BadCase{"NonManifold", "--var mesh=nonmanifold.obj", 1, "manifold"},
+                    BadCase{"OutCannotBeWritten", "--var out=/proc/none", 1, "/proc/none"},
                     BadCase{"UnknownVariable", "--var mehs=a.obj", 2, "mesh"},
                     BadCase{"UnknownNode", "--set hti.density=1", 2, "hit"},
                     BadCase{"UnknownParameter", "--set hit.densty=1", 2, "density"},
@@ -139,9 +150,10 @@ INSTANTIATE_TEST_SUITE_P(Cases, SlowGraphs,
 
 TEST(SlowGraphs, ThreeToughnessesGiveFallingCounts) {
   const ScratchDirectory scratch;
-  const ProgramRun run = runProgram("run '" + kGraphs + "toughness.json' --var out='" + scratch.file("out") + "'" +
-                                    " --set weak_picture.samples=1 --set medium_picture.samples=1"
-                                    " --set tough_picture.samples=1");
+  const ProgramRun run =
+      runProgram("run '" + kGraphs + "toughness.json' --var out='" + scratch.file("out") + "'" +
+                 " --set weak_picture.samples=1 --set medium_picture.samples=1"
+                 " --set tough_picture.samples=1");
   ASSERT_EQ(run.exitCode, 0) << run.output;
   std::size_t last = 1000;
   for (const char* name : {"weak", "medium", "tough"}) {
@@ -159,19 +171,22 @@ TEST_P(SlowModels, KeepEveryPromise) {
   const std::string mesh = kMeshes + model + ".obj";
   if (!std::filesystem::exists(mesh)) GTEST_SKIP() << mesh << " is not there";
   const ScratchDirectory scratch;
-  const ProgramRun run = runProgram("run '" + kGraphs + "first_fracture.json' --to crack --var mesh='" + mesh +
-                                    "' --var degree=" + std::to_string(degree) + " --var out='" + scratch.file("out") + "'");
+  const ProgramRun run =
+      runProgram("run '" + kGraphs + "first_fracture.json' --to crack --var mesh='" + mesh +
+                 "' --var degree=" + std::to_string(degree) + " --var out='" + scratch.file("out") + "'");
   ASSERT_EQ(run.exitCode, 0) << run.output;
   const auto wanted = static_cast<std::size_t>(degree);
   expectBroken(scratch.file("out"), mesh, wanted, 2 * wanted);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, SlowModels,
-                         testing::Combine(testing::Values("horse", "bunny", "bunny_7k", "spot", "fertility", "knight",
-                                                          "three_holes", "screwdriver", "armadillo"),
+                         testing::Combine(testing::Values("horse", "bunny", "bunny_7k", "spot", "fertility",
+                                                          "knight", "three_holes", "screwdriver",
+                                                          "armadillo"),
                                           testing::Values(48)),
                          [](const auto& info) {
-                           return std::string(std::get<0>(info.param)) + "_" + std::to_string(std::get<1>(info.param));
+                           return std::string(std::get<0>(info.param)) + "_" +
+                                  std::to_string(std::get<1>(info.param));
                          });
 
 }  // namespace

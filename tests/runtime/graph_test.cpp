@@ -55,12 +55,38 @@ TEST(Suggest, MeasuresEditDistance) {
   EXPECT_EQ(closest("", {"y"}), "");
 }
 
+TEST(Suggest, FindsNamesThatHaveAPartInCommon) {
+  const std::vector<std::string> known{"density", "youngs_modulus", "yield", "tip_toughness", "mesh"};
+  EXPECT_EQ(closest("young", known), "youngs_modulus");
+  EXPECT_EQ(closest("Modulus", known), "youngs_modulus");
+  EXPECT_EQ(closest("yuongs", known), "youngs_modulus");
+  EXPECT_EQ(closest("toughness", known), "tip_toughness");
+  EXPECT_EQ(closest("densty", known), "density");
+  EXPECT_EQ(closest("densty", {"mesh", "density_of_air"}), "density_of_air");
+  EXPECT_EQ(closest("the_mesh", known), "mesh");
+  EXPECT_EQ(closest("e", known), "");
+  EXPECT_EQ(closest("mu", known), "");
+  EXPECT_EQ(closest("viscosity", known), "");
+}
+
+TEST(Suggest, AlwaysSaysWhatWouldBeRight) {
+  std::vector<std::string> known;
+  EXPECT_EQ(suggestion("x", known, "nodes"), "there are no nodes");
+  for (int i = 10; i < 22; ++i) known.push_back("n" + std::to_string(i));
+  EXPECT_EQ(suggestion("wall", known, "nodes").substr(0, 27), "the known nodes are \"n10\", ");
+  EXPECT_EQ(suggestion("wall", known, "nodes", "sherd nodes").substr(0, 19), "the known nodes are");
+  known.insert(known.end(), {"n22", "n23"});
+  EXPECT_EQ(suggestion("wall", known, "nodes", "sherd nodes"), "`sherd nodes` lists the known nodes");
+  const std::string list = suggestion("wall", known, "nodes");
+  EXPECT_NE(list.find(", \"n21\" and 2 more"), std::string::npos) << list;
+}
+
 TEST(GraphCheck, TellsOfNodeTypes) {
   expectError(R"({"type": ^"Constnat@1"})",
               "n: there is no node type \"Constnat\"; did you mean \"Constant\"?");
   expectError(R"({"type": ^"Constant"})", "n: \"Constant\" names no version; write \"Constant@1\"");
   expectError(R"({"type": ^"Constant@2"})",
-              "n: \"Constant@2\" is newer than this program; it knows \"Constant@1\"");
+              "n: \"Constant@2\" is newer than this program; write \"Constant@1\", or update sherd");
   expectError(R"({"type": ^"Kinds@1"})",
               "n: \"Kinds@1\" is an old interface; write \"Kinds@2\" and adapt the node to what `sherd "
               "nodes Kinds` says");
@@ -168,6 +194,9 @@ TEST(GraphCheck, TellsOfTheFileAsAWhole) {
   EXPECT_EQ(errorsIn("{\"format\": 2, " + nodes + "}"),
             std::vector<std::string>{
                 "test.json:1:12: format: the format 2 is unknown; this program reads format 1"});
+  EXPECT_EQ(
+      errorsIn("{\"format\": \"1\", " + nodes + "}"),
+      std::vector<std::string>{"test.json:1:12: format: this is the string \"1\"; write \"format\": 1"});
   EXPECT_EQ(errorsIn("{\"format\": 1}"),
             std::vector<std::string>{"test.json:1:1: the key \"nodes\" is missing; a graph has nodes"});
   EXPECT_EQ(errorsIn("{\"format\": 1, \"nodes\": {}}"),
@@ -205,6 +234,25 @@ TEST(GraphCheck, TellsAllErrorsAtOnceInTheOrderOfTheFile) {
                           .errors;
   ASSERT_EQ(errors.size(), 5u) << joined(errors);
   EXPECT_TRUE(std::is_sorted(errors.begin(), errors.end()));
+}
+
+TEST(GraphCheck, AWrongVersionHidesNoOtherError) {
+  for (const char* type : {"Kinds", "Kinds@1", "Kinds@3", "Kinds@x"}) {
+    const auto errors = errorsOf("{\"type\": \"" + std::string(type) +
+                                 "\", \"in\": {\"cuont\": \"c\"}, \"params\": {\"length\": 0}}");
+    ASSERT_EQ(errors.size(), 3u) << type << '\n' << joined(errors);
+    EXPECT_NE(errors[0].find("n: \"Kinds"), std::string::npos) << errors[0];
+    EXPECT_NE(errors[1].find("n.cuont: Kinds has no input \"cuont\""), std::string::npos) << errors[1];
+    EXPECT_NE(errors[2].find("n.length: 0 is out of range"), std::string::npos) << errors[2];
+  }
+}
+
+TEST(GraphCheck, WhatIsWrittenInTheWrongFormIsNotAlsoMissing) {
+  expectError(R"({"type": "Add@1", "in": ^["c"]})", "n.in: this is a list; it would have to be an object");
+  expectError(R"({"type": "ReadText@1", "params": ^["x"]})",
+              "n.params: this is a list; it would have to be an object");
+  expectError(R"({"type": "ReadText@1", "in": ^"s"})",
+              "n.in: this is a string; it would have to be an object");
 }
 
 TEST(GraphCheck, CommandLineOverridesAndIsNamedInItsErrors) {
@@ -275,7 +323,8 @@ TEST(GraphCheck, LooksForFiles) {
                                      "/modle.obj\"; did you mean \"model.obj\"?"});
   EXPECT_EQ(errorsWith(R"("r": {"type": "ReadText@1", "params": {"file": "x/model.obj"}})"),
             std::vector<std::string>{"test.json:1:72: r.file: there is no file " + at +
-                                     "/x/model.obj\"; there is no directory " + at + "/x\" either"});
+                                     "/x/model.obj\"; correct the path: there is no directory " + at +
+                                     "/x\" either"});
   EXPECT_EQ(errorsWith(R"("r": {"type": "ReadText@1", "params": {"file": "."}})"),
             std::vector<std::string>{"test.json:1:72: r.file: " + at + "\" is a directory; name a file"});
   const std::string constant = R"("c": {"type": "Constant@1"},)";

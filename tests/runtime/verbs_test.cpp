@@ -48,8 +48,9 @@ TEST_F(Verbs, RunSaysWhatItDidAndWrote) {
   EXPECT_EQ(err.str(), "");
   EXPECT_NE(out.str().find("c  Constant  "), std::string::npos) << out.str();
   EXPECT_NE(out.str().find("s  Sink      "), std::string::npos);
-  EXPECT_NE(out.str().find("wrote 1 file in " + (directory.path() / "out").string() + ": value.txt\n"),
-            std::string::npos);
+  EXPECT_NE(
+      out.str().find("wrote 1 file in " + shownPath((directory.path() / "out").string()) + ": value.txt\n"),
+      std::string::npos);
   EXPECT_NE(out.str().find("done in "), std::string::npos);
   EXPECT_EQ(out.str().find('\x1b'), std::string::npos);
   EXPECT_TRUE(fs::exists(directory.path() / "out/value.txt"));
@@ -222,7 +223,64 @@ TEST(CommandLine, TellsVersionHelpAndMistakes) {
   EXPECT_EQ(std::get<0>(run({"run"})), kWrongInput);
   EXPECT_EQ(std::get<0>(run({"run", "g.json", "--threads", "-1"})), kWrongInput);
   EXPECT_EQ(std::get<0>(run({"run", "g.json", "--target", "a", "--to", "b"})), kWrongInput);
-  EXPECT_NE(std::get<2>(run({"run", "g.json", "--bogus"})), "");
+  EXPECT_EQ(std::get<0>(run({"run", "--help"})), kOk);
+  auto errorOf = [&](const std::vector<std::string>& arguments) {
+    const auto [code, out, err] = run(arguments);
+    EXPECT_EQ(code, kWrongInput) << err;
+    EXPECT_EQ(out, "");
+    return err;
+  };
+  const std::string verbs = "the verbs are run, check and nodes; `sherd --help` explains them\n";
+  EXPECT_EQ(errorOf({}), "sherd needs a verb; " + verbs);
+  EXPECT_EQ(errorOf({"foo"}), "there is no verb \"foo\"; " + verbs);
+  EXPECT_EQ(errorOf({"rnu", "g.json"}), "there is no verb \"rnu\"; did you mean \"run\"? " + verbs);
+  EXPECT_EQ(errorOf({"g.json"}), "\"g.json\" is no verb; did you mean `sherd run g.json`?\n");
+  EXPECT_EQ(errorOf({"--bogus", "run"}), "\"--bogus\" stands where a verb belongs; " + verbs);
+  EXPECT_EQ(errorOf({"run"}), "run needs a graph file; e.g. sherd run graphs/first_fracture.json\n");
+  EXPECT_EQ(errorOf({"check"}), "check needs a graph file; e.g. sherd check graphs/first_fracture.json\n");
+  EXPECT_EQ(errorOf({"run", "g.json", "--bogus"}),
+            "run has no option \"--bogus\"; `sherd run --help` lists what it takes\n");
+  EXPECT_EQ(errorOf({"run", "--quite"}), "run has no option \"--quite\"; did you mean \"--quiet\"?\n");
+  EXPECT_EQ(errorOf({"nodes", "Add", "Word"}),
+            "nodes doesn't take \"Word\"; `sherd nodes --help` lists what it takes\n");
+  EXPECT_NE(errorOf({"run", "g.json", "--threads", "x"}).find("`sherd run --help`"), std::string::npos);
+}
+
+TEST(CommandLine, EndsEventsWithDoneAlsoWhereItCannotBeParsed) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"run", "--json", "--bogus"},
+                                             {"run", "--json"},
+                                             {"rn", "g.json", "--json"},
+                                             {"run", "g.json", "--json", "--threads", "-1"}}) {
+    std::ostringstream out, err;
+    CancelToken cancel;
+    Console console{out, err, cancel, false, 80};
+    EXPECT_EQ(runCommandLine(arguments, console), kWrongInput);
+    std::istringstream lines(out.str());
+    std::string first, last;
+    std::getline(lines, first);
+    std::getline(lines, last);
+    const auto error = nlohmann::json::parse(first);
+    EXPECT_EQ(error["event"], "error");
+    EXPECT_EQ(error["message"].get<std::string>() + '\n', err.str());
+    const auto done = nlohmann::json::parse(last);
+    EXPECT_EQ(done["event"], "done");
+    EXPECT_EQ(done["ok"], false);
+  }
+}
+
+TEST(CommandLine, RefusesAssetsThatAreNoDirectory) {
+  std::ostringstream out, err;
+  CancelToken cancel;
+  Console console{out, err, cancel, false, 80};
+  setenv("SHERD_NODE_PATH", (std::string(SHERD_TEST_PACKS) + "/good/good_nodes.so").c_str(), 1);
+  setenv("SHERD_ASSETS", "/nonexist", 1);
+  EXPECT_EQ(runCommandLine({"check", "g.json"}, console), kWrongInput);
+  EXPECT_EQ(err.str(),
+            "the environment variable SHERD_ASSETS is \"/nonexist\", which is no directory; set it to the "
+            "folder of assets, or unset it to use those that come with sherd\n");
+  unsetenv("SHERD_ASSETS");
+  unsetenv("SHERD_NODE_PATH");
 }
 
 TEST(CommandLine, LoadsPacksOfTheSearchPath) {

@@ -20,8 +20,9 @@ struct ObjTriangles {
   double sixVolumes() const {
     double sum = 0;
     for (const auto& t : triangles) {
-      const auto &[a, b, c] = t;
-      sum += a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+      const auto& [a, b, c] = t;
+      sum += a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
+             a[2] * (b[0] * c[1] - b[1] * c[0]);
     }
     return sum;
   }
@@ -59,7 +60,8 @@ struct ExportedReport {
 };
 
 /// `directory` holds piece_*_surface.obj and piece_*_crack.obj.
-inline ExportedReport measureExported(const std::filesystem::path& directory, const std::filesystem::path& source) {
+inline ExportedReport measureExported(const std::filesystem::path& directory,
+                                      const std::filesystem::path& source) {
   ExportedReport report;
   std::map<std::array<ObjTriangles::Point, 3>, int> cracks;
   double volume = 0;

@@ -20,7 +20,8 @@ struct ProgramRun {
 /// `arguments` as one would type them, quoted for a shell.
 inline ProgramRun runProgram(const std::string& arguments, const std::string& environment = {}) {
   ProgramRun run;
-  const std::string command = environment + " '" SHERD_BINARY_DIR "/bin/sherd' " + arguments + " 2>&1 </dev/null";
+  const std::string command =
+      environment + " '" SHERD_BINARY_DIR "/bin/sherd' " + arguments + " 2>&1 </dev/null";
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return run;
   char buffer[4096];

@@ -13,13 +13,13 @@
 namespace sherd {
 
 struct PromiseReport {
-  std::size_t openEdges = 0;         ///< edges of a piece not used once in each direction (or equally often)
-  std::size_t lonelyCracks = 0;      ///< crack triangles without exactly one opposite twin in the piece they name
-  std::size_t degenerate = 0;        ///< triangles with two corners at one place
-  std::size_t badSolids = 0;         ///< pieces that are not one solid of positive volume
-  std::size_t badSources = 0;        ///< untouched triangles that differ from their source
-  double volumeError = 0;            ///< |Σ pieces − source| / source
-  double areaError = 0;              ///< the same for the outer skin
+  std::size_t openEdges = 0;     ///< edges of a piece not used once in each direction (or equally often)
+  std::size_t lonelyCracks = 0;  ///< crack triangles without exactly one opposite twin in the piece they name
+  std::size_t degenerate = 0;    ///< triangles with two corners at one place
+  std::size_t badSolids = 0;     ///< pieces that are not one solid of positive volume
+  std::size_t badSources = 0;    ///< untouched triangles that differ from their source
+  double volumeError = 0;        ///< |Σ pieces − source| / source
+  double areaError = 0;          ///< the same for the outer skin
 };
 
 namespace detail {
@@ -32,7 +32,8 @@ inline double sixVolumes(const std::vector<Vec3>& p, const std::vector<Triangle>
 
 inline double area(const std::vector<Vec3>& p, const std::vector<Triangle>& triangles) {
   double sum = 0;
-  for (const Triangle& t : triangles) sum += (p[at(t[1])] - p[at(t[0])]).cross(p[at(t[2])] - p[at(t[0])]).norm() / 2;
+  for (const Triangle& t : triangles)
+    sum += (p[at(t[1])] - p[at(t[0])]).cross(p[at(t[2])] - p[at(t[0])]).norm() / 2;
   return sum;
 }
 
@@ -52,7 +53,8 @@ inline int positiveShells(const std::vector<Vec3>& p, const std::vector<Triangle
     }
   std::map<std::size_t, double> volume;
   for (std::size_t i = 0; i < triangles.size(); ++i) volume[find(i)] += sixVolumes(p, {triangles[i]}, o);
-  return static_cast<int>(std::count_if(volume.begin(), volume.end(), [](const auto& v) { return v.second > 0; }));
+  return static_cast<int>(
+      std::count_if(volume.begin(), volume.end(), [](const auto& v) { return v.second > 0; }));
 }
 
 }  // namespace detail
@@ -90,7 +92,8 @@ inline PromiseReport measurePromises(const Fragments& f) {
           (inversions % 2 == 0 ? 1 : -1) * (1000 + (static_cast<Index>(i) < other ? 1 : 0));
     }
     for (std::size_t t = 0; t < piece.surface.size(); ++t)
-      if (piece.surfaceCut[t] < 0) report.badSources += piece.surface[t] != source.triangles[at(piece.surfaceSource[t])];
+      if (piece.surfaceCut[t] < 0)
+        report.badSources += piece.surface[t] != source.triangles[at(piece.surfaceSource[t])];
   }
   for (const auto& [key, balance] : cracks) report.lonelyCracks += std::abs(balance) != 1;
   const double whole = detail::sixVolumes(f.positions, source.triangles, origin);

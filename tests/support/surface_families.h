@@ -36,7 +36,8 @@ inline TriMesh sphereSurface(const Vec3& centre, double radius, int u, int v) {
   for (int j = 1; j < v; ++j)
     for (int i = 0; i < u; ++i) {
       const double a = 2 * std::numbers::pi * i / u, b = std::numbers::pi * j / v;
-      mesh.positions.push_back(centre + radius * Vec3(std::sin(b) * std::cos(a), std::cos(b), -std::sin(b) * std::sin(a)));
+      mesh.positions.push_back(
+          centre + radius * Vec3(std::sin(b) * std::cos(a), std::cos(b), -std::sin(b) * std::sin(a)));
     }
   mesh.positions.push_back(centre - Vec3(0, radius, 0));
   const Index south = static_cast<Index>(mesh.positions.size()) - 1;
@@ -73,8 +74,8 @@ inline TriMesh joined(TriMesh a, const TriMesh& b) {
   return a;
 }
 
-/// A block of n³ cubes around the surface, `margin` of its size larger on every side. `held` lists triangles whose
-/// box comes within rounding of the tetrahedron's.
+/// A block of n³ cubes around the surface, `margin` of its size larger on every side. `held` lists triangles
+/// whose box comes within rounding of the tetrahedron's.
 inline std::shared_ptr<const TetMesh> cagedInBlock(const TriMesh& surface, int n, double margin = 0.07) {
   const Box bounds = boxOf(surface.positions);
   const Vec3 border = Vec3::Constant(margin * bounds.diagonal());

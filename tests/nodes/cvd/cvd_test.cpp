@@ -217,6 +217,30 @@ TEST(Cvd, GrowsFromGivenSitesAndAnewForFewer) {
   EXPECT_TRUE(said.info("grown anew"));
 }
 
+TEST(Cvd, KnowsWhetherTheDegreeWasGiven) {
+  const Cloud c = cloud(200, 6, 4);
+  Sites s;
+  s.positions = partition(c, {.degree = 5}).sites;
+  Said said;
+  const Partition found = partition(c, {}, &s, said.exec);
+  EXPECT_FALSE(found.degreeGiven);
+  EXPECT_TRUE(said.info("not below γ = 0"));
+  s.gamma = 2;
+  EXPECT_FALSE(partition(c, {.degree = 5}, &s).degreeGiven);  // wired to the search's own number
+  EXPECT_EQ(partition(c, {.degree = 5}, &s).gamma, 2);
+  EXPECT_TRUE(partition(c, {.degree = 6}, &s).degreeGiven);
+  EXPECT_EQ(partition(c, {.degree = 6}, &s).gamma, 0);
+  EXPECT_TRUE(partition(c, {.degree = 5}).degreeGiven);
+  s.degreeGiven = true;
+  EXPECT_TRUE(partition(c, {}, &s).degreeGiven);
+  Partition other = found;
+  other.degreeGiven = true;
+  Hasher a, b;
+  hashValue(a, found);
+  hashValue(b, other);
+  EXPECT_NE(a.digest().hex(), b.digest().hex());
+}
+
 /// A body with its own nodes as embedding.
 Cloud bodyCloud(TetMesh mesh) {
   Cloud c;

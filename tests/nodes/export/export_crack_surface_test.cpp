@@ -140,6 +140,32 @@ TEST_F(Export, BrokenBodyIsNotCalledWhole) {
   EXPECT_FALSE(nlohmann::json::parse(slurp(out("pieces.json")))["below_threshold"]);
 }
 
+TEST_F(Export, GammaOfZeroIsNoDegreeGiven) {
+  Fragments f = test::slicedBox(2);
+  f.energy = 3;
+  ASSERT_TRUE(run(f).ok());
+  EXPECT_NE(listener.infos.back().find("is not below γ = 0 J·m²"), std::string::npos)
+      << listener.infos.back();
+  auto json = nlohmann::json::parse(slurp(out("pieces.json")));
+  EXPECT_FALSE(json["degree_given"]);
+  EXPECT_FALSE(json["below_threshold"]);
+  f.degreeGiven = true;
+  ASSERT_TRUE(run(f).ok());
+  EXPECT_NE(listener.infos.back().find("degree given"), std::string::npos) << listener.infos.back();
+  json = nlohmann::json::parse(slurp(out("pieces.json")));
+  EXPECT_TRUE(json["degree_given"]);
+  EXPECT_FALSE(json["below_threshold"]);
+}
+
+TEST_F(Export, HowTheDegreeCameAboutIsPartOfTheHash) {
+  Fragments f = test::slicedBox(2);
+  Hasher found, given;
+  hashValue(found, f);
+  f.degreeGiven = true;
+  hashValue(given, f);
+  EXPECT_NE(found.digest().hex(), given.digest().hex());
+}
+
 TEST_F(Export, PiecesCloseAndCrackFacesHaveTwins) {
   for (const double metresPerUnit : {1.0, 0.01}) {
     TriMesh box = test::boxMesh(Vec3(0.1, 0.2, 0.3), Vec3(4.7, 1.3, 1.9));
@@ -197,7 +223,9 @@ TEST_F(Export, NamesAndAttributes) {
 }
 
 TEST_F(Export, DescriptionAddsUp) {
-  ASSERT_TRUE(run(test::slicedBox(4)).ok());
+  Fragments four = test::slicedBox(4);
+  four.degreeGiven = true;
+  ASSERT_TRUE(run(four).ok());
   const auto json = nlohmann::json::parse(slurp(out("pieces.json")));
   EXPECT_EQ(json["N"], 4);
   EXPECT_EQ(json["piece_count"], 4);
@@ -245,7 +273,7 @@ TEST_F(Export, SecondRunTouchesNothingAndMendsWhatWasChanged) {
   fs::remove(out("piece_0001_surface.obj"));
   const auto third = run(f);
   ASSERT_TRUE(third.ok());
-  EXPECT_EQ(third->written, 2u);
+  EXPECT_EQ(third->written, 3u);  // the two, and the description that was withdrawn before them
   EXPECT_EQ(slurp(out("piece_0002_crack.obj")), whole);
 }
 
@@ -255,6 +283,7 @@ TEST_F(Export, RefusesForeignFileUnderOurNameBeforeWriting) {
   const auto result = run(test::slicedBox(2));
   ASSERT_FALSE(result.ok());
   EXPECT_NE(result.error().what.find("piece_0002_crack.obj"), std::string::npos);
+  EXPECT_EQ(result.error().port, "directory");
   EXPECT_EQ(namesIn(params.directory), std::set<std::string>{"piece_0002_crack.obj"});
 }
 
@@ -301,10 +330,12 @@ TEST_F(Export, DirectoryThatCannotBe) {
   auto result = run(test::slicedBox(2));
   ASSERT_FALSE(result.ok());
   EXPECT_NE(result.error().what.find("is a file, not a directory"), std::string::npos);
+  EXPECT_EQ(result.error().port, "directory");
   params.directory = (root / "file" / "below").string();
   result = run(test::slicedBox(2));
   ASSERT_FALSE(result.ok());
   EXPECT_NE(result.error().what.find("cannot create the directory"), std::string::npos);
+  EXPECT_EQ(result.error().port, "directory");
   params.directory = "/proc/sherd";
   EXPECT_FALSE(run(test::slicedBox(2)).ok());
 }
@@ -323,6 +354,8 @@ TEST_F(Export, FailedWriteLeavesNoStrayFile) {
   ASSERT_FALSE(result.ok());
   EXPECT_NE(result.error().what.find("cannot write '" + params.directory), std::string::npos)
       << result.error().what;
+  EXPECT_EQ(result.error().port, "directory");
+  EXPECT_FALSE(result.error().remedy.empty());
   for (const std::string& name : namesIn(params.directory))
     EXPECT_EQ(name.find(".partial"), std::string::npos);
   EXPECT_TRUE(run(test::slicedBox(2)).ok());
@@ -336,6 +369,48 @@ TEST_F(Export, CancelledRunLeavesNoPieces) {
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().kind, Error::Kind::Cancelled);
   EXPECT_TRUE(namesIn(params.directory).empty());
+}
+
+/// New pieces never stand beside the description of old ones.
+TEST_F(Export, CancelledMidwayLeavesNoDescription) {
+  ASSERT_TRUE(run(test::slicedBox(3)).ok());
+  CancelToken token;
+  listener.exec.cancel = &token;
+  listener.exec.onProgress = [&](double share) {
+    if (share >= 0.5) token.cancel();  // beyond the three old pieces' names
+  };
+  auto result = run(test::slicedBox(9));
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().kind, Error::Kind::Cancelled);
+  EXPECT_EQ(result.error().port, "");
+  EXPECT_FALSE(fs::exists(out("pieces.json")));
+  EXPECT_TRUE(fs::exists(out("piece_0001_surface.obj")));
+  listener.exec.cancel = nullptr;
+  ASSERT_TRUE(run(test::slicedBox(9)).ok());
+  EXPECT_EQ(nlohmann::json::parse(slurp(out("pieces.json")))["piece_count"], 9);
+}
+
+TEST_F(Export, FailedMidwayLeavesNoDescription) {
+  ASSERT_TRUE(run(test::slicedBox(3)).ok());
+  fs::remove(out("piece_0002_surface.obj"));
+  fs::create_directories(out("piece_0002_surface.obj") / "in the way");
+  const auto result = run(test::slicedBox(4));
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().port, "directory");
+  EXPECT_FALSE(result.error().remedy.empty());
+  EXPECT_FALSE(fs::exists(out("pieces.json")));
+  fs::remove_all(out("piece_0002_surface.obj"));
+  ASSERT_TRUE(run(test::slicedBox(4)).ok());
+  EXPECT_EQ(nlohmann::json::parse(slurp(out("pieces.json")))["piece_count"], 4);
+}
+
+TEST_F(Export, CancelledWhereNothingChangesKeepsTheDescription) {
+  ASSERT_TRUE(run(test::slicedBox(3)).ok());
+  CancelToken token;
+  listener.exec.cancel = &token;
+  listener.exec.onProgress = [&](double) { token.cancel(); };
+  ASSERT_FALSE(run(test::slicedBox(3)).ok());
+  EXPECT_TRUE(fs::exists(out("pieces.json")));
 }
 
 TEST_F(Export, WarnsOfWhatObjCannotHold) {

@@ -42,9 +42,10 @@ TEST(ExactPoints, NeverZeroAndAntisymmetricOnDegenerateInput) {
 }
 
 TEST(ExactPoints, ConsistentWithOneGeneralPosition) {
-  // Five points in general position have no impossible set of signs: for the tetrahedra left by dropping each point in
-  // turn, the alternating signs can't all agree to make a point lie beyond every face (Grassmann-Plücker for rank 4:
-  // here checked in the plane-sharing case, where all answers come from the displacement).
+  // Five points in general position have no impossible set of signs: for the tetrahedra left by dropping each
+  // point in turn, the alternating signs can't all agree to make a point lie beyond every face
+  // (Grassmann-Plücker for rank 4: here checked in the plane-sharing case, where all answers come from the
+  // displacement).
   std::vector<Vec3> p;
   for (int i = 0; i < 6; ++i) p.emplace_back(i % 2, (i / 2) % 2, i == 5 ? 0.5 : 0.0);
   const ExactPoints points(p);
@@ -55,7 +56,8 @@ TEST(ExactPoints, ConsistentWithOneGeneralPosition) {
       std::vector<Index> r;
       for (Index i = 0; i < 6; ++i)
         if (i != x && i != y) r.push_back(i);
-      const int s1 = chi(x, y, r[0], r[1]) * chi(x, y, r[2], r[3]), s2 = -chi(x, y, r[0], r[2]) * chi(x, y, r[1], r[3]),
+      const int s1 = chi(x, y, r[0], r[1]) * chi(x, y, r[2], r[3]),
+                s2 = -chi(x, y, r[0], r[2]) * chi(x, y, r[1], r[3]),
                 s3 = chi(x, y, r[0], r[3]) * chi(x, y, r[1], r[2]);
       EXPECT_FALSE(s1 == s2 && s2 == s3) << x << " " << y;
     }
@@ -63,10 +65,11 @@ TEST(ExactPoints, ConsistentWithOneGeneralPosition) {
 
 TEST(ExactPoints, CrossingsOfAClosedSurfaceAreEvenEvenThroughVerticesAndEdges) {
   // An octahedron, probed along lines through its corners and edges: what goes in comes out.
-  std::vector<Vec3> p{Vec3(1, 0, 0),  Vec3(-1, 0, 0), Vec3(0, 1, 0),  Vec3(0, -1, 0), Vec3(0, 0, 1),
-                      Vec3(0, 0, -1), Vec3(-3, 0, 0), Vec3(3, 0, 0),  Vec3(0, -2, 0), Vec3(0, 2, 0),
-                      Vec3(-1, -1, 0), Vec3(1, 1, 0), Vec3(-2, 1, 0), Vec3(2, 1, 0)};
-  const std::vector<Triangle> faces{{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  std::vector<Vec3> p{Vec3(1, 0, 0),   Vec3(-1, 0, 0), Vec3(0, 1, 0),  Vec3(0, -1, 0), Vec3(0, 0, 1),
+                      Vec3(0, 0, -1),  Vec3(-3, 0, 0), Vec3(3, 0, 0),  Vec3(0, -2, 0), Vec3(0, 2, 0),
+                      Vec3(-1, -1, 0), Vec3(1, 1, 0),  Vec3(-2, 1, 0), Vec3(2, 1, 0)};
+  const std::vector<Triangle> faces{{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                                    {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
   const ExactPoints points(p);
   for (Index from = 6; from < 14; from += 2) {
     int crossings = 0, balance = 0;
@@ -102,8 +105,9 @@ TEST(ExactPoints, CrossingPointKeepsSharedCoordinatesAndDoesNotDependOnDirection
   for (int i = 0; i < 200; ++i) {
     auto coordinate = [&] { return rng.uniform() * 2 - 1; };
     const double plane = 0.1 * coordinate();
-    std::vector<Vec3> p{Vec3(coordinate() * 0.1, coordinate() * 0.1, -1), Vec3(coordinate() * 0.1, coordinate() * 0.1, 1),
-                        Vec3(-2, -2, plane), Vec3(2, -2, plane), Vec3(0, 3, plane)};
+    std::vector<Vec3> p{Vec3(coordinate() * 0.1, coordinate() * 0.1, -1),
+                        Vec3(coordinate() * 0.1, coordinate() * 0.1, 1), Vec3(-2, -2, plane),
+                        Vec3(2, -2, plane), Vec3(0, 3, plane)};
     const ExactPoints points(p);
     ASSERT_TRUE(points.crosses(0, 1, {2, 3, 4}));
     const Vec3 at = points.crossing(0, 1, {2, 3, 4});

@@ -94,7 +94,8 @@ TEST(ObjReader, Errors) {
   expectError(readObj("v 1 2 3 4 5 6 7 8\n"), "line 1: more than 7 numbers");
   expectError(readObj("vn 1 2\n"), "line 1: 'vn' has 2 numbers");
   expectError(readObj("vt\n"), "line 1: 'vt' has 0 numbers");
-  expectError(readObj("v 1 2 3x\n"), "line 1: '3x' is not a number");
+  expectError(readObj("v 1 2 3x\n"),
+              "line 1: '3x' is not a number; a number such as 1.5 or 2e-3 is expected");
   expectError(readObj(three + "f 1 2\n"), "line 4: a face with 2 corners");
   expectError(readObj(three + "f 0 1 2\n"), "numbers start at 1");
   expectError(readObj(three + "f 1 2 -4\n"), "line 4: there is no vertex -4");
@@ -105,7 +106,8 @@ TEST(ObjReader, Errors) {
   expectError(readObj(three + "surf 0 1 0 1 1 2 3\n"), "line 4: free-form geometry");
   expectError(readObj("\x7f"
                       "ELF\x01\x02 x\n"),
-              "line 1: '?ELF?" "?' is no OBJ statement");
+              "line 1: '?ELF?"
+              "?' is no OBJ statement");
 }
 
 TEST(ObjReader, DamagedFiles) { test::expectNoCrashOnDamage(readObj, kFull); }

@@ -50,7 +50,7 @@ TEST(OffReader, RealColours) {
 TEST(OffReader, Errors) {
   const std::string three = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
   expectError(readOff(""), "line 1: this is no OFF file");
-  expectError(readOff("solid\n"), "line 1: this is no OFF file");
+  expectError(readOff("solid\n"), "line 1: this is no OFF file; one starts with OFF, COFF, NOFF or CNOFF;");
   expectError(readOff("4OFF\n"), "not three-dimensional");
   expectError(readOff("OFF BINARY\n"), "binary OFF is not read");
   expectError(readOff("OFF\nx 1 0\n"), "line 2: 'x' is no number of vertices");
@@ -58,7 +58,7 @@ TEST(OffReader, Errors) {
   expectError(readOff("OFF\n-3 1 0\n"), "line 2: '-3' is no number of vertices");
   expectError(readOff("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n"), "no faces");
   expectError(readOff("OFF\n3 1 0\n0 0 0\n1 0\n"), "line 4: the file or the line ends within a vertex");
-  expectError(readOff("OFF\n3 1 0\n0 0 y\n"), "line 3: 'y' is not a number");
+  expectError(readOff("OFF\n3 1 0\n0 0 y\n"), "line 3: 'y' is not a number; a number such as 1.5");
   expectError(readOff(three), "ends within the faces");
   expectError(readOff(three + "3 0 1\n"), "line 6: the file or the line ends within a face");
   expectError(readOff(three + "3 0 1 3\n"), "line 6: there is no vertex 3");

@@ -115,7 +115,7 @@ TEST(PlyReader, HeaderErrors) {
   const std::string xyz = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
   const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
   expectError(readPly(""), "line 1: this is no PLY file");
-  expectError(readPly("plywood\n"), "line 1: this is no PLY file");
+  expectError(readPly("plywood\n"), "line 1: this is no PLY file; the first line of one is 'ply';");
   expectError(readPly(start), "the header has no end_header");
   expectError(readPly("ply\nend_header\n"), "line 2: the header has no format");
   expectError(readPly("ply\nformat binary 1.0\n"), "line 2: unknown PLY format 'binary'");
@@ -140,7 +140,7 @@ TEST(PlyReader, BodyErrors) {
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
   const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
   EXPECT_TRUE(readPly(header + points + "3 0 1 2").ok());
-  expectError(readPly(header + "0 0 0\n1 x 0\n"), "line 11: 'x' is not a number");
+  expectError(readPly(header + "0 0 0\n1 x 0\n"), "line 11: 'x' is not a number; a number such as 1.5");
   expectError(readPly(header + points), "the file ends too early");
   expectError(readPly(header + points + "3 0 1"), "line 13: the file ends too early");
   expectError(readPly(header + points + "3 0 1 3"), "line 13: a face names a vertex that does not exist");

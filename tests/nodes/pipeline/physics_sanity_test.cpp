@@ -1,4 +1,5 @@
-// From impact to cells on bodies of cubes: what an artist expects of a break, and that metric and physics deliver it.
+// From impact to cells on bodies of cubes: what an artist expects of a break, and that metric and physics
+// deliver it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +19,8 @@ namespace {
 
 using TetsPtr = std::shared_ptr<const TetMesh>;
 
-std::shared_ptr<const Embedding> embedded(const TetsPtr& tets, EmbedParams::Metric metric = EmbedParams::Metric::Auto) {
+std::shared_ptr<const Embedding> embedded(const TetsPtr& tets,
+                                          EmbedParams::Metric metric = EmbedParams::Metric::Auto) {
   EmbedParams params;
   params.metric = metric;
   auto result = embed(tets, params, Exec{});
@@ -43,7 +45,8 @@ WeightField weighted(const EnergyField& energy, const ScalarGrid* beta = nullptr
   return std::move(*result);
 }
 
-Sites sitesFor(const WeightField& w, const Embedding& e, double gamma, int degree = 0, std::int64_t seed = 1) {
+Sites sitesFor(const WeightField& w, const Embedding& e, double gamma, int degree = 0,
+               std::int64_t seed = 1) {
   PredictDegreeParams params;
   params.gamma = gamma;
   params.degree = degree;
@@ -89,7 +92,8 @@ TEST(PhysicsSanity, TougherMaterialFallsIntoFewerPieces) {
   const auto e = embedded(tets);
   const WeightField w = weighted(dropped(tets, 1).energy);
   const double gamma = gammaForDegree(w, *e, 60);
-  const auto weak = sitesFor(w, *e, gamma).positions.cols(), tough = sitesFor(w, *e, 10 * gamma).positions.cols(),
+  const auto weak = sitesFor(w, *e, gamma).positions.cols(),
+             tough = sitesFor(w, *e, 10 * gamma).positions.cols(),
              hard = sitesFor(w, *e, 100 * gamma).positions.cols();
   EXPECT_GT(weak, tough);
   EXPECT_GT(tough, hard);
@@ -125,7 +129,8 @@ TEST(PhysicsSanity, TwoSeedsGiveDifferentPiecesOfOneCount) {
   const TetsPtr tets = plank();
   const auto e = embedded(tets);
   const WeightField w = weighted(dropped(tets, 1).energy);
-  const Partition a = cellsFor(w, e, sitesFor(w, *e, 0, 12, 1)), b = cellsFor(w, e, sitesFor(w, *e, 0, 12, 2));
+  const Partition a = cellsFor(w, e, sitesFor(w, *e, 0, 12, 1)),
+                  b = cellsFor(w, e, sitesFor(w, *e, 0, 12, 2));
   EXPECT_EQ(a.siteCount(), 12u);
   EXPECT_EQ(b.siteCount(), 12u);
   EXPECT_NE(a.sites, b.sites);
@@ -133,7 +138,8 @@ TEST(PhysicsSanity, TwoSeedsGiveDifferentPiecesOfOneCount) {
 
 TEST(PhysicsSanity, AHalvedTimeStepChangesTheEnergyByLessThanTwoPercent) {
   const TetsPtr tets = plank();
-  const double whole = totalEnergy(dropped(tets, 1, 1.0 / 120).energy), half = totalEnergy(dropped(tets, 1, 1.0 / 240).energy);
+  const double whole = totalEnergy(dropped(tets, 1, 1.0 / 120).energy),
+               half = totalEnergy(dropped(tets, 1, 1.0 / 240).energy);
   EXPECT_NEAR(half, whole, 0.02 * whole);
   EXPECT_NEAR(half, whole, 1e-4 * whole);  // what conservative advancement reaches
 }
@@ -163,7 +169,8 @@ int scatteredCells(const Partition& cells) {
     }
   std::map<Index, std::set<std::size_t>> parts;
   for (std::size_t n = 0; n < tets.nodes.size(); ++n) parts[cells.label[n]].insert(sets.find(n));
-  return static_cast<int>(std::count_if(parts.begin(), parts.end(), [](const auto& p) { return p.second.size() > 1; }));
+  return static_cast<int>(
+      std::count_if(parts.begin(), parts.end(), [](const auto& p) { return p.second.size() > 1; }));
 }
 
 TEST(PhysicsSanity, InteriorMetricDoesNotCutAcrossAGapAndEuclideanDoes) {
@@ -175,7 +182,8 @@ TEST(PhysicsSanity, InteriorMetricDoesNotCutAcrossAGapAndEuclideanDoes) {
   int interior = 0, euclidean = 0;
   for (const int degree : {3, 4, 5, 6})
     for (const std::int64_t seed : {1, 2, 3}) {
-      const auto in = embedded(tets, EmbedParams::Metric::Interior), out = embedded(tets, EmbedParams::Metric::Euclidean);
+      const auto in = embedded(tets, EmbedParams::Metric::Interior),
+                 out = embedded(tets, EmbedParams::Metric::Euclidean);
       interior += scatteredCells(cellsFor(w, in, sitesFor(w, *in, 0, degree, seed)));
       euclidean += scatteredCells(cellsFor(w, out, sitesFor(w, *out, 0, degree, seed)));
     }

@@ -62,7 +62,8 @@ TEST(Toughness, AFragileHalfBreaksIntoMorePieces) {
     return fragile / 40.0;
   };
   EXPECT_NEAR(share(nullptr), 0.5, 0.08);
-  // Cells of equal energy times squared size: their density goes with β^(3/5), so 4^0.6 / (1 + 4^0.6) of them.
+  // Cells of equal energy times squared size: their density goes with β^(3/5), so 4^0.6 / (1 + 4^0.6) of
+  // them.
   EXPECT_NEAR(share(&*beta), 0.70, 0.08);
 }
 

@@ -133,6 +133,21 @@ TEST(PredictDegree, EndsWhereThereAreNoMoreNodesOrSitesAllowed) {
   EXPECT_LE(search(c, {.gamma = 0}).positions.cols(), 4);
 }
 
+TEST(PredictDegree, TellsAGivenDegreeFromAGammaOfZero) {
+  const Cloud c = cloud(20, 3, 8);
+  const Sites zero = search(c, {.gamma = 0, .maxDegree = 4}), given = search(c, {.gamma = 1, .degree = 4});
+  EXPECT_FALSE(zero.degreeGiven);
+  EXPECT_EQ(zero.gamma, 0);
+  EXPECT_TRUE(given.degreeGiven);
+  EXPECT_FALSE(search(c, {.gamma = 1}).degreeGiven);
+  Sites other = given;
+  other.degreeGiven = false;
+  Hasher a, b;
+  hashValue(a, given);
+  hashValue(b, other);
+  EXPECT_NE(a.digest().hex(), b.digest().hex());
+}
+
 TEST(PredictDegree, Refuses) {
   const Cloud c = cloud(20, 3, 9);
   auto portOf = [&](const PredictDegreeParams& p) {

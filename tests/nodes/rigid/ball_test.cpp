@@ -32,7 +32,9 @@ TEST(BallAtBody, BadBallsAreNamed) {
     return impact.ok() ? std::string() : impact.error().text();
   };
   RigidParams params = throwAlong(Vec3::Zero(), Vec3::Constant(0.5));
-  EXPECT_NE(errorOf(params).find("ball_direction"), std::string::npos);
+  EXPECT_NE(errorOf(params).find("ball_direction is (0, 0, 0); must be"), std::string::npos);
+  params = throwAlong(Vec3::UnitX(), Vec3(0.5, NAN, 0.5));
+  EXPECT_EQ(errorOf(params), "ball_target is (0.5, nan, 0.5); must be finite");
   params = throwAlong(Vec3::UnitX(), Vec3::Constant(0.5));
   params.ballRadius = 0;
   EXPECT_NE(errorOf(params).find("ball_radius"), std::string::npos);
@@ -46,6 +48,69 @@ TEST(BallAtBody, AimedPastItMisses) {
   EXPECT_FALSE(hitBy(sphere(0.3, 3), throwAlong(Vec3::UnitX(), Vec3(0.5, 1.2, 0.5))).hit);
   EXPECT_FALSE(hitBy(sphere(0.3, 3), throwAlong(Vec3::UnitX(), Vec3(0.5, 1.084, 0.5))).hit);
   EXPECT_TRUE(hitBy(sphere(0.3, 3), throwAlong(Vec3::UnitX(), Vec3(0.5, 1.082, 0.5))).hit);
+}
+
+TEST(BallAtBody, SaysWhyItMissed) {
+  const TetMesh body = families::box(2, 2, 2, Vec3(0.4, 0.4, 0.4));
+  const auto why = [&](const RigidParams& params) {
+    EXPECT_FALSE(hitBy(body, params).hit);
+    return whyNoImpact(body, params);
+  };
+  RigidParams params = throwAlong(Vec3::UnitX(), Vec3(0.5, 1.5, 0.5));  // 0.2 m above, radius 0.05 m
+  EXPECT_EQ(why(params).port, "ball_target");
+  EXPECT_EQ(why(params).text(), "the ball passes the body by 0.15 m; aim ball_target within [0, 1]");
+  params = throwAlong(Vec3(1, -1, 0), Vec3(1, 1, 0.5) + Vec3(0.25, 0.25, 0));  // over an edge, 0.1 √2 m away
+  EXPECT_NE(why(params).what.find("by 0.0914 m"), std::string::npos) << why(params).what;
+  params = throwAlong(Vec3::UnitX(), Vec3::Constant(0.5));
+  params.velocity = Vec3(0, 40, 0);
+  EXPECT_NE(why(params).remedy.find("own velocity"), std::string::npos) << why(params).text();
+  EXPECT_EQ(why(params).port, "ball_target");
+  params.velocity = Vec3(10, 0, 0);
+  EXPECT_EQ(why(params).port, "ball_speed");
+  params.velocity = Vec3(9.9, 0, 0);
+  EXPECT_TRUE(hitBy(body, params).hit);
+  params.maxTime = 1e-3;
+  EXPECT_EQ(why(params).port, "max_time");
+  const TetMesh hollow = families::uShape(1, 2, 5, 2, 0.1);
+  params = throwAlong(Vec3::UnitZ(), Vec3(0.5, 0.7, 0.5));  // between the arms, whose gap is 0.2 m wide
+  EXPECT_NE(whyNoImpact(hollow, params).text().find("by 0.05 m"), std::string::npos)
+      << whyNoImpact(hollow, params).text();
+  EXPECT_NE(whyNoImpact(hollow, params).remedy.find("raise ball_radius"), std::string::npos);
+}
+
+TEST(BallAtBody, BallsTooSmallOrTooLightAreNamed) {
+  const auto portOf = [](const RigidParams& params) {
+    const Result<Impact> impact = dropUntilImpact(families::box(2, 2, 2, Vec3(0.4, 0.4, 0.4)), params, {});
+    if (!impact.ok()) return impact.error().port;
+    return std::string(totalImpulse(*impact).norm() > 0 ? "ok" : "no impulse");
+  };
+  const RigidParams usual = throwAlong(Vec3::UnitX(), Vec3::Constant(0.4));
+  RigidParams params = usual;
+  params.ballRadius = 1e-10;
+  EXPECT_EQ(portOf(params), "ball_radius");
+  params.ballRadius = 1e-6;
+  EXPECT_EQ(portOf(params), "ok");
+  params = usual;
+  params.ballDensity = 5e-324;
+  EXPECT_EQ(portOf(params), "ball_density");
+  params.ballDensity = 1e-300;
+  EXPECT_EQ(portOf(params), "ball_density");
+  params.ballDensity = 1;
+  EXPECT_EQ(portOf(params), "ok");
+  params = usual;
+  params.body.density = 1e-300;
+  EXPECT_EQ(portOf(params), "density");
+}
+
+TEST(BallAtBody, ALargeBallIsNotLate) {
+  const TetMesh body = families::box(2, 2, 2, Vec3(0.4, 0.4, 0.4));
+  for (const double radius : {0.01, 1.0, 1000.0}) {
+    RigidParams params = throwAlong(Vec3::UnitX(), Vec3::Constant(0.5));
+    params.ballRadius = radius;
+    const Impact impact = hitBy(body, params);
+    ASSERT_TRUE(impact.hit) << radius;
+    EXPECT_LT(impact.time, 0.2 / params.ballSpeed) << radius;  // half the body's size
+  }
 }
 
 TEST(BallAtBody, CentralHitIsTheTextbooks) {

@@ -48,6 +48,108 @@ TEST(DropOnFloor, ParametersOutOfRangeAreNamed) {
   EXPECT_NE(errorOf(body, params).find("angular_velocity"), std::string::npos);
 }
 
+TEST(DropOnFloor, VectorsOutOfRangeArePrinted) {
+  const TetMesh body = sphere(1, 1);
+  RigidParams params;
+  params.orientation = Vec3(1, NAN, 2.5);
+  EXPECT_EQ(errorOf(body, params), "orientation is (1, nan, 2.5); must be finite");
+  params = {};
+  params.velocity = Vec3(INFINITY, 0, 0);
+  EXPECT_EQ(errorOf(body, params), "velocity is (inf, 0, 0); must be finite");
+  params = {};
+  params.angularVelocity = Vec3(0, 0, 2e4);
+  EXPECT_NE(errorOf(body, params).find("(0, 0, 20000)"), std::string::npos);
+  params = {};
+  params.body.density = -1e-9;
+  EXPECT_EQ(errorOf(body, params), "density is -1e-09; must be above 0");
+}
+
+TEST(DropOnFloor, WeightlessAndEndlesslySoftAreNamed) {
+  const auto portOf = [](const RigidParams& params) {
+    const Result<Impact> impact = dropUntilImpact(sphere(0.1, 2), params, {});
+    return impact.ok() ? std::string("ok") : impact.error().port;
+  };
+  EXPECT_EQ(portOf({}), "ok");
+  RigidParams params;
+  params.body.density = 1e-300;
+  EXPECT_EQ(portOf(params), "density");
+  params.body.density = 1e300;
+  EXPECT_EQ(portOf(params), "density");
+  params = {};
+  params.body.youngModulus = 5e-324;
+  EXPECT_EQ(portOf(params), "young");
+  params.contactDuration = 1e-3;
+  params.contactRadius = 0.01;
+  EXPECT_EQ(portOf(params), "ok");  // nothing is Hertz's
+  params = {};
+  params.obstacleYoung = 5e-324;
+  EXPECT_EQ(portOf(params), "obstacle_young");
+}
+
+TEST(DropOnFloor, APatchIsNoLargerThanTheBody) {
+  std::vector<std::string> warnings;
+  Exec exec;
+  exec.onMessage = [&](LogLevel, const std::string& line) { warnings.push_back(line); };
+  RigidParams params;
+  const auto radius = [&] {
+    const Result<Impact> impact = dropUntilImpact(sphere(0.1, 2), params, exec);
+    return impact.ok() ? impact->contacts.at(0).radius : -1;
+  };
+  EXPECT_LT(radius(), 0.1);
+  EXPECT_TRUE(warnings.empty());
+  params.contactRadius = 3;
+  EXPECT_NEAR(radius(), 0.2, 1e-12);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("lower contact_radius"), std::string::npos) << warnings[0];
+  params.contactRadius = 0;
+  params.body.youngModulus = 1e-300;
+  EXPECT_NEAR(radius(), 0.2, 1e-12);
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_NE(warnings[1].find("check young"), std::string::npos) << warnings[1];
+}
+
+/// The reason is right: what it tells to change, changed so, gives an impact.
+TEST(DropOnFloor, SaysWhyNothingWasHit) {
+  const TetMesh body = sphere(0.1, 2);
+  const auto why = [&](const RigidParams& params) {
+    EXPECT_FALSE(drop(body, params).hit);
+    return whyNoImpact(body, params);
+  };
+  RigidParams params;
+  params.dropHeight = 1000;
+  EXPECT_EQ(why(params).port, "max_time");
+  EXPECT_EQ(why(params).text(),
+            "the body is still in the air after 10 s; it needs 14.3 s to fall; raise max_time above that");
+  params.maxTime = 14.3;
+  EXPECT_TRUE(drop(body, params).hit);
+  params.maxTime = 10;
+  params.velocity = Vec3(0, -200, 0);
+  EXPECT_TRUE(drop(body, params).hit);
+  params.velocity = Vec3(0, -90, 0);
+  params.gravity = 0;
+  EXPECT_NE(why(params).text().find("11.2 s"), std::string::npos) << why(params).text();
+  params = {};
+  params.velocity = Vec3(0, 60, 0);  // 2 · 60 / 9.81 s and a little
+  EXPECT_NE(why(params).text().find("12.3 s"), std::string::npos) << why(params).text();
+  params.angularVelocity = Vec3(1, 0, 0);
+  EXPECT_NE(why(params).text().find("up to 12.3 s"), std::string::npos) << why(params).text();
+  params = {};
+  params.gravity = 0;
+  EXPECT_EQ(why(params).port, "gravity");
+  params.velocity = Vec3(0, 1, 0);
+  EXPECT_EQ(why(params).port, "gravity");
+  params = {};
+  params.gravity = 1e-9;
+  EXPECT_EQ(why(params).port, "drop_height");
+  params.velocity = Vec3(0, 3, 0);
+  EXPECT_EQ(why(params).port, "velocity");
+  params = {};
+  params.dropHeight = 0;
+  EXPECT_NE(why(params).text().find("lies on the floor"), std::string::npos) << why(params).text();
+  params.gravity = -1;
+  EXPECT_EQ(whyNoImpact(body, params).port, "gravity");
+}
+
 TEST(DropOnFloor, WithoutGravityNothingIsHit) {
   RigidParams params;
   params.gravity = 0;

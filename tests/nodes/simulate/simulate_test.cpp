@@ -44,16 +44,38 @@ SimulateParams tilted() {
   return params;
 }
 
-TEST(Simulate, WithoutAHitThereIsNoEnergyAndAWarning) {
-  Messages said;
+/// A fracture of a body that nothing hit would be one whole piece, as if it were tough.
+TEST(Simulate, WithoutAHitFailsByTheParametersName) {
+  const auto errorOf = [](const SimulateParams& params) {
+    const Result<SimulateOutput> out = simulate(someU(), params, {});
+    return out.ok() ? failure("no error") : out.error();
+  };
   SimulateParams params = tilted();
   params.gravity = 0;
-  const SimulateOutput out = run(someU(), params, said.exec());
-  EXPECT_FALSE(out.impact.hit);
-  EXPECT_EQ(totalEnergy(out.energy), 0);
-  EXPECT_EQ(out.energy.nodeEnergy.size(), out.energy.tets->nodes.size());
+  EXPECT_EQ(errorOf(params).port, "gravity");
+  params = tilted();
+  params.dropHeight = 1000;
+  EXPECT_EQ(errorOf(params).port, "max_time");
+  EXPECT_NE(errorOf(params).text().find("14.3 s"), std::string::npos) << errorOf(params).text();
+  params.maxTime = 14.3;
+  EXPECT_EQ(errorOf(params).what, "no error");
+  params = tilted();
+  params.scene = RigidScene::Ball;
+  params.ballTarget = Vec3(0.5, 5, 0.5);
+  EXPECT_EQ(errorOf(params).port, "ball_target");
+  params.ballTarget = Vec3(0.5, 0.2, 0.5);
+  EXPECT_EQ(errorOf(params).what, "no error");
+}
+
+/// Hertz's contact of a body as soft as nothing is larger than any body: it is cut, and said to be.
+TEST(Simulate, AbsurdlySoftIsToldAsSuch) {
+  Messages said;
+  SimulateParams params = tilted();
+  params.body.youngModulus = 1e-300;
+  const Result<SimulateOutput> out = simulate(someU(), params, said.exec());
+  EXPECT_TRUE(out.ok() || out.error().text().find("young") != std::string::npos);
   ASSERT_EQ(said.warnings.size(), 1U);
-  EXPECT_NE(said.warnings[0].find("nothing is hit"), std::string::npos);
+  EXPECT_NE(said.warnings[0].find("young"), std::string::npos) << said.warnings[0];
 }
 
 TEST(Simulate, BelowTheThresholdStaticsAreSkipped) {

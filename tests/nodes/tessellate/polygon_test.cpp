@@ -76,8 +76,10 @@ TEST(Polygon, HolesAndIslands) {
     expected += loopArea2(c, hole);  // negative
     loops.push_back(hole);
   }
-  loops.push_back({static_cast<Index>(p.size()), static_cast<Index>(p.size()) + 1, static_cast<Index>(p.size()) + 2});
-  for (const Vec2& q : {Vec2(2.8, 2.8), Vec2(3.2, 2.8), Vec2(3, 3.2)}) p.push_back(q);  // an island in the first hole
+  loops.push_back(
+      {static_cast<Index>(p.size()), static_cast<Index>(p.size()) + 1, static_cast<Index>(p.size()) + 2});
+  for (const Vec2& q : {Vec2(2.8, 2.8), Vec2(3.2, 2.8), Vec2(3, 3.2)})
+    p.push_back(q);  // an island in the first hole
   expected += 0.16;
   const auto c = cornersOf(p);
   const auto t = triangulatePolygon(c, loops);

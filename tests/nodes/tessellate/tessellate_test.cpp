@@ -38,11 +38,13 @@ std::vector<Vec3> randomSites(const TetMesh& tets, std::size_t count, std::uint6
   Rng rng(seed);
   std::vector<Vec3> sites;
   for (std::size_t i = 0; i < count; ++i)
-    sites.push_back(box.low + Vec3(rng.uniform(), rng.uniform(), rng.uniform()).cwiseProduct(box.high - box.low));
+    sites.push_back(box.low +
+                    Vec3(rng.uniform(), rng.uniform(), rng.uniform()).cwiseProduct(box.high - box.low));
   return sites;
 }
 
-Fragments breakAt(std::shared_ptr<const TetMesh> tets, const std::vector<Vec3>& sites, double minVolume = 1e-5) {
+Fragments breakAt(std::shared_ptr<const TetMesh> tets, const std::vector<Vec3>& sites,
+                  double minVolume = 1e-5) {
   const auto result = tessellate(partitionBySites(std::move(tets), sites), {.minVolume = minVolume}, Exec{});
   EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().text());
   return result.ok() ? *result : Fragments{};
@@ -69,13 +71,16 @@ TEST(Tessellate, TwoCellsHalveABox) {
   const Fragments f = breakAt(tets, {Vec3(-0.5, 0.1, 0), Vec3(0.5, 0.1, 0)});
   ASSERT_EQ(f.pieces.size(), 2u);
   expectPromises(f);
-  // The bisector is the plane x = 0, which the schemes reproduce since distances are affine along tetrahedral edges.
+  // The bisector is the plane x = 0, which the schemes reproduce since distances are affine along tetrahedral
+  // edges.
   EXPECT_NEAR(f.pieces[0].volume, 4, 1e-9);
   EXPECT_NEAR(f.pieces[1].volume, 4, 1e-9);
   double contact = 0;
   for (const Triangle& t : f.pieces[0].crack) {
     for (const Index v : t) EXPECT_NEAR(f.positions[at(v)].x(), 0, 1e-12);
-    contact += 0.5 * (f.positions[at(t[1])] - f.positions[at(t[0])]).cross(f.positions[at(t[2])] - f.positions[at(t[0])]).norm();
+    contact += 0.5 * (f.positions[at(t[1])] - f.positions[at(t[0])])
+                         .cross(f.positions[at(t[2])] - f.positions[at(t[0])])
+                         .norm();
   }
   EXPECT_NEAR(contact, 4, 1e-9);
   EXPECT_NEAR(f.pieces[0].centreOfMass.norm(), 0.5, 1e-9);
@@ -84,9 +89,11 @@ TEST(Tessellate, TwoCellsHalveABox) {
 TEST(Tessellate, SheetsThroughVerticesEdgesAndCoplanarFacesOfTheSurface) {
   // The surface's grid and the cage's grid have sheets of symmetric sites run exactly through them.
   for (const int n : {2, 3, 4, 6}) {
-    const auto tets = families::cagedInBlock(families::boxSurface(Vec3(-1, -1, -1), Vec3(1, 1, 1), 4, 4, 4), n);
+    const auto tets =
+        families::cagedInBlock(families::boxSurface(Vec3(-1, -1, -1), Vec3(1, 1, 1), 4, 4, 4), n);
     std::vector<Vec3> sites;
-    for (int i = 0; i < 8; ++i) sites.emplace_back(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5);
+    for (int i = 0; i < 8; ++i)
+      sites.emplace_back(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5);
     const Fragments f = breakAt(tets, sites);
     EXPECT_GE(f.pieces.size(), 8u) << n;
     expectPromises(f);
@@ -117,7 +124,8 @@ TEST(Tessellate, AVoidStaysAVoid) {
 TEST(Tessellate, SmallCellInsideIsAPieceWithinAVoid) {
   const auto tets = families::cagedInBlock(families::sphereSurface(Vec3::Zero(), 1, 32, 16), 9);
   std::vector<Vec3> sites{Vec3(0.01, 0.02, 0.03)};
-  for (const Vec3& d : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) sites.insert(sites.end(), {0.9 * d, -0.9 * d});
+  for (const Vec3& d : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
+    sites.insert(sites.end(), {0.9 * d, -0.9 * d});
   const Fragments f = breakAt(tets, sites);
   EXPECT_EQ(f.pieces.size(), 7u);
   expectPromises(f);
@@ -157,21 +165,24 @@ TEST(Tessellate, SeveralComponentsAreSeveralPieces) {
 TEST(Tessellate, AttributesOfCutTrianglesAreInterpolated) {
   TriMesh torus = families::torusSurface(1, 0.4, 24, 12);
   for (const Triangle& t : torus.triangles)
-    for (const Index v : t) torus.normals.push_back(torus.positions[at(v)]);  // linear in place: exact to interpolate
+    for (const Index v : t)
+      torus.normals.push_back(torus.positions[at(v)]);  // linear in place: exact to interpolate
   const auto tets = families::cagedInBlock(torus, 7);
   const Fragments f = breakAt(tets, randomSites(*tets, 12, 5));
   expectPromises(f);
   for (const Piece& p : f.pieces)
     for (std::size_t t = 0; t < p.surface.size(); ++t)
       for (std::size_t c = 0; c < 3; ++c)
-        EXPECT_LT((cornerAttribute(f, p, t, c, torus.normals) - f.positions[at(p.surface[t][c])]).norm(), 1e-12);
+        EXPECT_LT((cornerAttribute(f, p, t, c, torus.normals) - f.positions[at(p.surface[t][c])]).norm(),
+                  1e-12);
 }
 
 TEST(Tessellate, RandomCellsKeepEveryPromise) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-    const TriMesh surface = seed % 3 == 0   ? families::torusSurface(1, 0.35, 30, 14)
-                            : seed % 3 == 1 ? families::sphereSurface(Vec3(10, -20, 5), 1, 30, 15)
-                                            : families::boxSurface(Vec3(0, 0, 0), Vec3(1, 0.6, 0.1), 10, 6, 2);
+    const TriMesh surface = seed % 3 == 0 ? families::torusSurface(1, 0.35, 30, 14)
+                            : seed % 3 == 1
+                                ? families::sphereSurface(Vec3(10, -20, 5), 1, 30, 15)
+                                : families::boxSurface(Vec3(0, 0, 0), Vec3(1, 0.6, 0.1), 10, 6, 2);
     const auto tets = families::cagedInBlock(surface, 4 + static_cast<int>(seed % 4));
     const Fragments f = breakAt(tets, randomSites(*tets, 3 + 4 * seed, seed));
     SCOPED_TRACE(seed);

@@ -1,7 +1,9 @@
 #include "surfaces.h"
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -196,6 +198,29 @@ std::pair<int, int> cageTopology(const TetMesh& cage) {
     }
   return {components, static_cast<int>(vertices.size()) - static_cast<int>(edges.size()) +
                           static_cast<int>(cage.boundary.size())};
+}
+
+bool holds(const TetMesh& cage, const Vec3& point) {
+  return std::any_of(cage.tets.begin(), cage.tets.end(), [&](const Tetra& tet) {
+    return std::all_of(std::begin(kTetraFace), std::end(kTetraFace), [&](const auto& face) {
+      const auto node = [&](int c) { return cage.nodes[at(tet[static_cast<std::size_t>(c)])]; };
+      const Vec3 a = node(face[0]);
+      return (node(face[1]) - a).cross(node(face[2]) - a).dot(point - a) <= 0;
+    });
+  });
+}
+
+Result<TetMesh> cageOf(TriMesh mesh, int tets) {
+  return tetrahedralize(shared(std::move(mesh)), {.tets = tets}, {});
+}
+
+void expectGood(const Result<TetMesh>& cage, int components, int euler) {
+  ASSERT_TRUE(cage.ok()) << cage.error().text();
+  EXPECT_EQ(defectOf(*cage), "");
+  EXPECT_EQ(cageTopology(*cage), std::make_pair(components, euler));
+  EXPECT_LT(cage->quality.volumeError, 1e-9);
+  EXPECT_GT(cage->quality.minDihedral, 3);
+  EXPECT_LT(cage->quality.maxDihedral, 175);
 }
 
 }  // namespace sherd::test

@@ -25,7 +25,13 @@ std::shared_ptr<const TriMesh> shared(TriMesh mesh);
 /// held triangles, fractions. Empty if all holds; else what does not.
 std::string defectOf(const TetMesh& cage);
 
+/// Is the point in a tetrahedron of the cage?
+bool holds(const TetMesh& cage, const Vec3& point);
+
 /// (components, Euler characteristic of the whole boundary)
 std::pair<int, int> cageTopology(const TetMesh& cage);
+
+Result<TetMesh> cageOf(TriMesh mesh, int tets = 400);
+void expectGood(const Result<TetMesh>& cage, int components, int euler);
 
 }  // namespace sherd::test
