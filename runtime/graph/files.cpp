@@ -13,6 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// In full: the end is what tells one file from another.
+std::string pathInQuotes(const fs::path& path) { return inQuotes(path.string(), path.string().size()); }
+
 Error wrong(std::string what, std::string remedy) {
   return Error{std::move(what), std::move(remedy), {}, Error::Kind::Input};
 }
@@ -31,7 +34,7 @@ std::string nearFile(const fs::path& path) {
   std::error_code problem;
   const fs::path folder = path.parent_path();
   if (!fs::is_directory(folder, problem))
-    return "correct the path: there is no directory " + inQuotes(firstMissing(folder).string()) + " either";
+    return "correct the path: there is no directory " + pathInQuotes(firstMissing(folder)) + " either";
   std::vector<std::string> names;
   for (fs::directory_iterator it(folder, problem), end; !problem && it != end && names.size() < kMostRead;
        it.increment(problem))
@@ -43,10 +46,10 @@ std::string nearFile(const fs::path& path) {
 Result<void> checkInputFile(const fs::path& path) {
   std::error_code problem;
   const fs::file_status status = fs::status(path, problem);
-  if (!fs::exists(status)) return wrong("there is no file " + inQuotes(path.string()), nearFile(path));
-  if (fs::is_directory(status)) return wrong(inQuotes(path.string()) + " is a directory", "name a file");
+  if (!fs::exists(status)) return wrong("there is no file " + pathInQuotes(path), nearFile(path));
+  if (fs::is_directory(status)) return wrong(pathInQuotes(path) + " is a directory", "name a file");
   if (::access(path.c_str(), R_OK) != 0)
-    return wrong(inQuotes(path.string()) + " can't be read: " + std::strerror(errno), "allow reading it");
+    return wrong(pathInQuotes(path) + " can't be read: " + std::strerror(errno), "allow reading it");
   return {};
 }
 
@@ -58,23 +61,23 @@ Result<void> checkOutputDirectory(const fs::path& path) {
     if (fs::is_directory(status)) {
       if (::access(folder.c_str(), W_OK | X_OK) == 0) return {};
       return wrong(
-          "the directory " + inQuotes(folder.string()) + " can't be written into: " + std::strerror(errno),
+          "the directory " + pathInQuotes(folder) + " can't be written into: " + std::strerror(errno),
           "choose another one or allow writing");
     }
     if (fs::exists(status))
-      return wrong(inQuotes(folder.string()) + " is there and is no directory",
+      return wrong(pathInQuotes(folder) + " is there and is no directory",
                    "choose another path or remove it");
     if (folder == folder.parent_path())
-      return wrong(inQuotes(path.string()) + " can't be made", "choose another path");
+      return wrong(pathInQuotes(path) + " can't be made", "choose another path");
   }
 }
 
 Result<void> checkOutputFile(const fs::path& path) {
   std::error_code problem;
   const fs::file_status status = fs::status(path, problem);
-  if (fs::is_directory(status)) return wrong(inQuotes(path.string()) + " is a directory", "name a file");
+  if (fs::is_directory(status)) return wrong(pathInQuotes(path) + " is a directory", "name a file");
   if (fs::exists(status) && ::access(path.c_str(), W_OK) != 0)
-    return wrong(inQuotes(path.string()) + " can't be overwritten: " + std::strerror(errno),
+    return wrong(pathInQuotes(path) + " can't be overwritten: " + std::strerror(errno),
                  "choose another file");
   return checkOutputDirectory(path.parent_path());
 }

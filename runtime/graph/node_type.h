@@ -1,19 +1,21 @@
 // What a node type tells of itself: ports, parameters and how to run it. One table per node, written with
 // NodeBuilder in <step>_node.cpp, from which JSON reading, hashing, help and schema all derive.
 //
+// clang-format off
 //   NodeType cvdNode() {
 //     return NodeBuilder<CvdParams>("CVD", 1, "Places the cells that the body breaks into.")
 //         .input<WeightField>("weights", "what each node weighs")
 //         .optionalInput<Sites>("sites", "sites to start from")
-//         .integer("degree", &CvdParams::degree, {.min = 0, .help = "number of sites; 0: as many as `sites`
-//         has"}) .choice("labels", &CvdParams::labels, {{"exact", Labels::Exact}, {"flood", Labels::Flood}},
-//         "…") .output<Partition>("cells", "every node's nearest site") .run([](const CvdParams& params,
-//         NodeIo& io) -> Result<void> {
+//         .integer("degree", &CvdParams::degree, {.min = 0, .help = "number of sites; 0: as many as `sites` has"})
+//         .choice("labels", &CvdParams::labels, {{"exact", Labels::Exact}, {"flood", Labels::Flood}}, "…")
+//         .output<Partition>("cells", "every node's nearest site")
+//         .run([](const CvdParams& params, NodeIo& io) -> Result<void> {
 //           SHERD_ASSIGN(Partition cells, cvd(*io.in<WeightField>("weights"), …, params, io.exec()));
 //           io.out("cells", std::move(cells));
 //           return {};
 //         });
 //   }
+// clang-format on
 #pragma once
 
 #include <cstdint>

@@ -117,10 +117,9 @@ std::string quotedList(const std::vector<std::string>& words) {
   return list;
 }
 
-std::string inQuotes(std::string_view text) {
-  constexpr std::size_t kLongest = 60;
+std::string inQuotes(std::string_view text, std::size_t longest) {
   std::string result = "\"";
-  std::size_t end = std::min(text.size(), kLongest);
+  std::size_t end = std::min(text.size(), longest);
   while (end < text.size() && end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
   for (const char c : text.substr(0, end)) result += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
   return result + (end < text.size() ? "…\"" : "\"");

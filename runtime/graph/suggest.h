@@ -28,7 +28,7 @@ std::string listing(const std::vector<std::string>& known, std::string_view kind
 
 /// The words in quotation marks, separated by commas.
 std::string quotedList(const std::vector<std::string>& words);
-/// The text in quotation marks, shortened to 60 characters, control characters made visible.
-std::string inQuotes(std::string_view text);
+/// The text in quotation marks, shortened to `longest` bytes, control characters made visible.
+std::string inQuotes(std::string_view text, std::size_t longest = 60);
 
 }  // namespace sherd

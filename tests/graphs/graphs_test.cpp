@@ -10,7 +10,7 @@ namespace {
 const std::string kGraphs = SHERD_SOURCE_DIR "/graphs/";
 const std::string kAssets = SHERD_SOURCE_DIR "/assets/";
 const std::string kMeshes = SHERD_SOURCE_DIR "/../shared/meshes/";
-const std::string kQuickPicture = " --set picture.width=120 --set picture.height=60 --set picture.samples=1";
+const std::string kQuickPicture = " --set picture.width=120 --set picture.height=64 --set picture.samples=1";
 
 void expectBroken(const std::string& directory, const std::string& source, std::size_t least,
                   std::size_t most) {
@@ -90,6 +90,8 @@ struct BadCase {
   int exitCode;
   const char* says;
 };
+
+std::ostream& operator<<(std::ostream& out, const BadCase& c) { return out << c.arguments; }
 
 class BadInput : public testing::TestWithParam<BadCase> {};
 
