@@ -178,7 +178,8 @@ TEST_P(SlowModels, KeepEveryPromise) {
                  "' --var degree=" + std::to_string(degree) + " --var out='" + scratch.file("out") + "'");
   ASSERT_EQ(run.exitCode, 0) << run.output;
   const auto wanted = static_cast<std::size_t>(degree);
-  expectBroken(scratch.file("out"), mesh, wanted, 2 * wanted);
+  // Parts below min_volume join a neighbour, and parts that the cut detaches are pieces of their own.
+  expectBroken(scratch.file("out"), mesh, wanted - wanted / 10, 2 * wanted);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, SlowModels,
