@@ -13,6 +13,7 @@
 
 #include "base/exec.h"
 #include "base/hash.h"
+#include "eval/result.h"
 #include "graph/value.h"
 
 namespace sherd {
@@ -23,11 +24,6 @@ struct Output {
   Digest digest;
 };
 using Outputs = std::map<std::string, Output>;
-
-struct Message {
-  LogLevel level = LogLevel::Info;
-  std::string text;
-};
 
 /// What a node made, and what it said while it did: a hit says it again.
 struct CachedResult {

@@ -52,7 +52,7 @@ Digest digestOf(const Value& value, const Outputs& inputs) {
 /// Takes the outputs over with their digests, if they are what the type declares.
 std::optional<Error> collect(const NodeType& type, const NodeIo& io, const Outputs& inputs,
                              Outputs& outputs) {
-  for (const auto& [port, value] : io.outputs()) {
+  for (const auto& [port, value, label] : io.outputs()) {
     const PortInfo* declared = type.output(port);
     if (declared == nullptr)
       return failure("the node set an output \"" + port + "\" that it doesn't declare",

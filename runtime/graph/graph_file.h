@@ -12,9 +12,11 @@ namespace sherd {
 
 /// A key and its value: a variable, or a parameter of a node.
 struct Setting {
-  std::string name;
-  Origin origin;  ///< of the key
+  std::string name;  ///< of a variable in a subgraph: with its scope, as "break/gamma"
+  Origin origin;     ///< of the key
   JsonValue value;
+  std::string scope = {};  ///< whose variables the value may name: "" are the graph's, "break/" those of the
+                           ///< subgraph that the node "break" stands for
 };
 
 /// "port": "node" or "node.output".
@@ -26,7 +28,7 @@ struct LinkEntry {
 };
 
 struct NodeEntry {
-  std::string name;
+  std::string name;  ///< in a subgraph: with the nodes that stand for it, as "break/cells"
   Origin origin;
   std::string type;
   static constexpr int kNoVersion = -1;
@@ -44,6 +46,14 @@ struct TargetEntry {
   std::vector<std::pair<std::string, Origin>> nodes;
 };
 
+/// A node that stood for a subgraph before the subgraph took its place.
+struct GroupEntry {
+  std::string name;  ///< "break"
+  Origin origin;
+  std::vector<std::pair<std::string, std::string>>
+      outputs;  ///< name, and "node.output" or "node" within the graph
+};
+
 struct GraphFile {
   SourcePtr source;
   double fps = 24;
@@ -51,6 +61,7 @@ struct GraphFile {
   std::vector<Setting> vars;
   std::vector<TargetEntry> targets;
   std::vector<NodeEntry> nodes;
+  std::vector<GroupEntry> groups;  ///< outer ones first
 };
 
 /// Reads what there is to read and reports all that is wrong in form: syntax, unknown keys, wrong kinds.

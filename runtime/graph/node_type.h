@@ -29,6 +29,7 @@
 
 #include "base/exec.h"
 #include "base/result.h"
+#include "graph/migration.h"
 #include "graph/value.h"
 
 namespace sherd {
@@ -66,38 +67,83 @@ struct PortInfo {
   std::string type;  ///< ValueType::name
   bool required = true;
   std::string help;
+  const ValueType* value = nullptr;  ///< how its values are hashed, sized, saved and loaded
+  bool gathers = false;  ///< an input that takes all frames and wedges of what is wired to it, in their order
+};
+
+/// Something inside a node that can't be stopped at once: a library's call.
+struct Uninterruptible {
+  std::string call;      ///< "OpenVDB's meshToVolume"
+  double longestMs = 0;  ///< measured, on the models and resolutions that the tests use
 };
 
 /// What a running node sees: its inputs, its outputs, the user.
 class NodeIo {
  public:
+  /// A value at a port.
+  struct Port {
+    std::string name;
+    Value value;
+    std::string label;  ///< of a gathered value: "frame 1001, seed 7"
+  };
+  template <class T>
+  struct Labelled {
+    std::shared_ptr<const T> value;
+    std::string label;
+  };
+
   explicit NodeIo(const Exec& exec) : exec_(exec) {}
 
   const Exec& exec() const { return exec_; }
   /// The value wired to `port`. Never null for a required input; null for an optional one left open.
   template <class T>
-  std::shared_ptr<const T> in(const std::string& port) const {
-    const auto found = inputs_.find(port);
-    return found == inputs_.end() ? nullptr : found->second.as<T>();
+  std::shared_ptr<const T> in(std::string_view port) const {
+    for (const Port& input : inputs_)
+      if (input.name == port) return input.value.as<T>();
+    return nullptr;
+  }
+  /// The values at an input that gathers, by frames and wedges in their order. Those that were left empty are
+  /// not in it.
+  template <class T>
+  std::vector<Labelled<T>> all(std::string_view port) const {
+    std::vector<Labelled<T>> values;
+    for (const Port& input : inputs_)
+      if (auto value = input.name == port ? input.value.as<T>() : nullptr)
+        values.push_back({std::move(value), input.label});
+    return values;
   }
   template <class T>
-  void out(const std::string& port, T value) {
-    outputs_[port] = Value::of<T>(std::make_shared<const T>(std::move(value)));
+  void out(std::string_view port, T value) {
+    outShared<T>(port, std::make_shared<const T>(std::move(value)));
   }
   template <class T>
-  void outShared(const std::string& port, std::shared_ptr<const T> value) {
-    outputs_[port] = Value::of<T>(std::move(value));
+  void outShared(std::string_view port, std::shared_ptr<const T> value) {
+    for (Port& output : outputs_)
+      if (output.name == port) {
+        output.value = Value::of<T>(std::move(value));
+        return;
+      }
+    outputs_.push_back({std::string(port), Value::of<T>(std::move(value)), {}});
   }
-  /// Tells the runtime of a file that was written, by its absolute path.
+  /// Tells the runtime of a file that was written, by its absolute path. Where one of them is missing or has
+  /// changed the node runs again; so what lists a directory's files counts as written, too.
   void wrote(std::string path) { written_.push_back(std::move(path)); }
 
-  void setInput(const std::string& port, Value value) { inputs_[port] = std::move(value); }
-  const std::map<std::string, Value>& outputs() const { return outputs_; }
+  void setInput(std::string port, Value value, std::string label = {}) {
+    inputs_.push_back({std::move(port), std::move(value), std::move(label)});
+  }
+  const std::vector<Port>& outputs() const { return outputs_; }
+  /// The output's value; empty where it was not set.
+  Value output(std::string_view port) const {
+    for (const Port& output : outputs_)
+      if (output.name == port) return output.value;
+    return {};
+  }
   const std::vector<std::string>& written() const { return written_; }
 
  private:
   const Exec& exec_;
-  std::map<std::string, Value> inputs_, outputs_;
+  std::vector<Port> inputs_, outputs_;
   std::vector<std::string> written_;
 };
 
@@ -110,7 +156,10 @@ struct NodeType {
   std::string help;
   std::vector<PortInfo> inputs, outputs;  ///< the first output is what "node" without a port means
   std::vector<ParamInfo> params;
-  bool writesFiles = false;  ///< an exporter: run whenever asked for, never taken from a cache
+  bool writesFiles = false;  ///< an exporter: a hit only where the files that it wrote are still there
+  std::vector<Migration> migrations;              ///< from each older version to the next
+  std::vector<std::string> formerNames;           ///< that graphs may still use
+  std::vector<Uninterruptible> uninterruptibles;  ///< where cancelling waits
   /// Runs the node. `params` holds every parameter, checked. May throw only what libraries throw.
   std::function<Result<void>(const ParamValues& params, NodeIo& io)> run;
 
@@ -140,17 +189,22 @@ class NodeBuilder {
 
   template <class T>
   NodeBuilder& input(std::string name, std::string help) {
-    type_.inputs.push_back({std::move(name), valueTypeName<T>(), true, std::move(help)});
-    return *this;
+    return addInput<T>(std::move(name), std::move(help), true);
   }
   template <class T>
   NodeBuilder& optionalInput(std::string name, std::string help) {
-    type_.inputs.push_back({std::move(name), valueTypeName<T>(), false, std::move(help)});
+    return addInput<T>(std::move(name), std::move(help), false);
+  }
+  /// An input that takes the values of all frames and wedges at once; the node runs once for all of them.
+  template <class T>
+  NodeBuilder& gatheredInput(std::string name, std::string help) {
+    addInput<T>(std::move(name), std::move(help), true);
+    type_.inputs.back().gathers = true;
     return *this;
   }
   template <class T>
   NodeBuilder& output(std::string name, std::string help) {
-    type_.outputs.push_back({std::move(name), valueTypeName<T>(), false, std::move(help)});
+    type_.outputs.push_back({std::move(name), valueTypeName<T>(), false, std::move(help), &valueType<T>()});
     return *this;
   }
   NodeBuilder& implementation(int number) {
@@ -159,6 +213,21 @@ class NodeBuilder {
   }
   NodeBuilder& writesFiles() {
     type_.writesFiles = true;
+    return *this;
+  }
+  /// How nodes written for version `from` become nodes of version from + 1.
+  NodeBuilder& migrate(int from, std::vector<MigrationStep> steps) {
+    type_.migrations.push_back({from, std::move(steps)});
+    return *this;
+  }
+  /// A name that the type had before.
+  NodeBuilder& formerly(std::string name) {
+    type_.formerNames.push_back(std::move(name));
+    return *this;
+  }
+  /// A library's call that can't be stopped at once, and how long it took at most when it was measured.
+  NodeBuilder& uninterruptible(std::string call, double longestMs) {
+    type_.uninterruptibles.push_back({std::move(call), longestMs});
     return *this;
   }
 
@@ -232,6 +301,11 @@ class NodeBuilder {
  private:
   using Setter = std::function<void(P&, const ParamValue&)>;
 
+  template <class T>
+  NodeBuilder& addInput(std::string name, std::string help, bool required) {
+    type_.inputs.push_back({std::move(name), valueTypeName<T>(), required, std::move(help), &valueType<T>()});
+    return *this;
+  }
   NodeBuilder& add(std::string name, ParamKind kind, ParamValue fallback, NumberOptions options,
                    Setter setter) {
     setters_.emplace_back(name, std::move(setter));

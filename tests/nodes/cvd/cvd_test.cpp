@@ -332,9 +332,9 @@ TEST(CvdNode, PassesOn) {
   ASSERT_TRUE(type.run(params, io).ok());
   const Partition expected = partition(c, {.degree = 7});
   EXPECT_EQ(type.outputs.front().name, "cells");
-  EXPECT_EQ(io.outputs().at("cells").as<Partition>()->label, expected.label);
-  EXPECT_EQ(*io.outputs().at("degree").as<std::int64_t>(), 7);
-  EXPECT_EQ(*io.outputs().at("energy").as<double>(), expected.energy);
+  EXPECT_EQ(io.output("cells").as<Partition>()->label, expected.label);
+  EXPECT_EQ(*io.output("degree").as<std::int64_t>(), 7);
+  EXPECT_EQ(*io.output("energy").as<double>(), expected.energy);
 }
 
 }  // namespace

@@ -258,7 +258,7 @@ TEST(EmbedNode, PassesOn) {
   NodeIo io(exec);
   io.setInput("tets", Value::of<TetMesh>(box));
   ASSERT_TRUE(type.run(params, io).ok());
-  EXPECT_EQ(io.outputs().at("embedding").as<Embedding>()->coordinates, embedded(box).coordinates);
+  EXPECT_EQ(io.output("embedding").as<Embedding>()->coordinates, embedded(box).coordinates);
 }
 
 }  // namespace

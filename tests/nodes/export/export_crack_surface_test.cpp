@@ -478,7 +478,7 @@ TEST_F(Export, NodeWritesAndTellsOfItsFiles) {
   NodeIo io(listener.exec);
   io.setInput("pieces", Value::of<Fragments>(std::make_shared<const Fragments>(test::slicedBox(2))));
   ASSERT_TRUE(type.run(values, io).ok());
-  EXPECT_EQ(*io.outputs().at("manifest").as<std::string>(), out("pieces.json").string());
+  EXPECT_EQ(*io.output("manifest").as<std::string>(), out("pieces.json").string());
   EXPECT_EQ(io.written().size(), 6u);
   for (const std::string& file : io.written()) EXPECT_TRUE(fs::exists(file));
 }

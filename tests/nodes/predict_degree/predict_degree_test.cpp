@@ -180,10 +180,10 @@ TEST(PredictDegreeNode, PassesOn) {
   io.setInput("embedding", Value::of<Embedding>(c.embedding));
   ASSERT_TRUE(type.run(params, io).ok());
   EXPECT_EQ(type.outputs.front().name, "degree");
-  const auto sites = io.outputs().at("sites").as<Sites>();
+  const auto sites = io.output("sites").as<Sites>();
   EXPECT_GT(sites->positions.cols(), 2);
-  EXPECT_EQ(*io.outputs().at("degree").as<std::int64_t>(), sites->positions.cols());
-  EXPECT_EQ(*io.outputs().at("energy").as<double>(), sites->energy);
+  EXPECT_EQ(*io.output("degree").as<std::int64_t>(), sites->positions.cols());
+  EXPECT_EQ(*io.output("energy").as<double>(), sites->energy);
 }
 
 }  // namespace

@@ -200,9 +200,9 @@ TEST(SimulateNode, RunsWithItsDefaults) {
   const Result<void> done = node.run(values, io);
   ASSERT_TRUE(done.ok()) << done.error().text();
   const double expected = totalEnergy(run(someU(), tilted()).energy);
-  EXPECT_EQ(*io.outputs().at("work").as<double>(), expected);
-  EXPECT_EQ(totalEnergy(*io.outputs().at("energy").as<EnergyField>()), expected);
-  EXPECT_TRUE(io.outputs().at("impact").as<Impact>()->hit);
+  EXPECT_EQ(*io.output("work").as<double>(), expected);
+  EXPECT_EQ(totalEnergy(*io.output("energy").as<EnergyField>()), expected);
+  EXPECT_TRUE(io.output("impact").as<Impact>()->hit);
   EXPECT_EQ(node.outputs.front().name, "energy");
 }
 

@@ -20,7 +20,7 @@ TEST(TetrahedralizeNode, GivesWhatTheFunctionGives) {
   ASSERT_TRUE(done.ok()) << done.error().text();
   const auto direct = tetrahedralize(mesh, {.tets = 300}, exec);
   ASSERT_TRUE(direct.ok());
-  const Value out = io.outputs().at("tets");
+  const Value out = io.output("tets");
   EXPECT_EQ(out.digest(), Value::of<TetMesh>(std::make_shared<const TetMesh>(*direct)).digest());
 }
 

@@ -123,7 +123,7 @@ TEST(WeightsNode, PassesOn) {
   NodeIo io(exec);
   io.setInput("energy", Value::of<EnergyField>(std::make_shared<const EnergyField>(e)));
   ASSERT_TRUE(type.run({{"alpha", 0.5}}, io).ok());
-  const auto out = io.outputs().at("weights").as<WeightField>();
+  const auto out = io.output("weights").as<WeightField>();
   ASSERT_TRUE(out);
   EXPECT_EQ(out->weight, weighed(e, 0.5).weight);
 }
