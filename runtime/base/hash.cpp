@@ -7,6 +7,13 @@
 
 namespace sherd {
 
+std::uint64_t checksum64(const void* data, std::size_t size) { return XXH3_64bits(data, size); }
+
+Digest checksum128(const void* data, std::size_t size) {
+  const XXH128_hash_t h = XXH3_128bits(data, size);
+  return {h.high64, h.low64};
+}
+
 struct Hasher::State {
   XXH3_state_t* xxh = XXH3_createState();
   ~State() { XXH3_freeState(xxh); }

@@ -18,6 +18,10 @@ struct Digest {
   std::string hex() const;  ///< 32 lower-case hexadecimal digits
 };
 
+/// Of `size` bytes alone: to find damage in what was written before. O(size).
+std::uint64_t checksum64(const void* data, std::size_t size);
+Digest checksum128(const void* data, std::size_t size);
+
 /// Feeds bytes into one digest. Every `add` also feeds the length, so that ("ab","c") differs from
 /// ("a","bc").
 class Hasher {

@@ -35,8 +35,9 @@ struct Commands {
   RunOptions run;
   CheckOptions check;
   NodesOptions nodes;
+  CacheOptions cache;
   int threads = 0;
-  CLI::App *runApp = nullptr, *checkApp = nullptr, *nodesApp = nullptr;
+  CLI::App *runApp = nullptr, *checkApp = nullptr, *nodesApp = nullptr, *cacheApp = nullptr;
 
   Commands() {
     app.set_version_flag("--version", std::string("sherd ") + SHERD_VERSION);
@@ -46,6 +47,7 @@ struct Commands {
     nodesApp = app.add_subcommand("nodes", "list the node types, or tell all about one");
     nodesApp->add_option("TYPE", nodes.type, "a node type");
     nodesApp->add_flag("--json", nodes.json, "as JSON");
+    addCache();
   }
 
  private:
@@ -75,6 +77,19 @@ struct Commands {
     addRepeated(*checkApp, "--set", check.sets, "NODE.PARAM=VALUE", "set a parameter");
     addRepeated(*checkApp, "--var", check.vars, "NAME=VALUE", "set a variable of the graph");
   }
+
+  void addCache() {
+    cacheApp = app.add_subcommand("cache", "look after the results that are kept on disk");
+    cacheApp->add_option("ACTION", cache.action,
+                         "stat: how much there is; gc: make it fit into --max; verify: read all and remove "
+                         "what is damaged; clear: remove everything");
+    cacheApp
+        ->add_option("--cache", cache.directory,
+                     "the cache's directory; otherwise $SHERD_CACHE, $XDG_CACHE_HOME/sherd or ~/.cache/sherd")
+        ->type_name("DIR");
+    cacheApp->add_option("--max", cache.max, "what gc leaves at most, such as 500M; otherwise 10G")
+        ->type_name("SIZE");
+  }
 };
 
 /// Says what ended the program before a verb could; to a reader of events as such, "done" being the last.
@@ -98,11 +113,12 @@ std::vector<std::string> optionNames(const CLI::App& verb) {
 
 /// What the parser found wrong.
 Error parseError(const Commands& commands, const CLI::ParseError& error) {
-  for (const CLI::App* verb : {commands.runApp, commands.checkApp, commands.nodesApp}) {
+  for (const CLI::App* verb : {commands.runApp, commands.checkApp, commands.nodesApp, commands.cacheApp}) {
     if (!verb->parsed()) continue;
     if (const std::vector<std::string> left = verb->remaining(); !left.empty())
       return unexpectedArgument(verb->get_name(), left.front(), optionNames(*verb));
-    const bool needsGraph = verb != commands.nodesApp && verb->get_option("GRAPH")->count() == 0;
+    const bool needsGraph =
+        (verb == commands.runApp || verb == commands.checkApp) && verb->get_option("GRAPH")->count() == 0;
     if (needsGraph && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
       return missingGraph(verb->get_name());
     return Error{
@@ -124,6 +140,7 @@ Result<Environment> makeEnvironment() {
 
 int runVerbOf(Commands& commands, Console& console) {
   setThreadLimit(commands.threads);
+  if (commands.cacheApp->parsed()) return cacheVerb(commands.cache, Environment::ofProcess({}), console);
   const auto registry = loadNodes();
   if (!registry.ok()) return refuse(registry.error(), commands.run.json, console);
   if (commands.nodesApp->parsed()) return nodesVerb(commands.nodes, *registry, console);

@@ -1,6 +1,7 @@
 // The program's verbs. Each returns the exit code and prints only to its console.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -34,5 +35,16 @@ struct NodesOptions {
   bool json = false;
 };
 int nodesVerb(const NodesOptions& options, const Registry& registry, Console& console);
+
+struct CacheOptions {
+  std::string action;     ///< stat, gc, verify or clear
+  std::string directory;  ///< empty: DiskStore::defaultDirectory
+  std::string max;        ///< of gc, as parseSize takes it; empty: DiskStoreOptions::mostBytes
+};
+/// A directory that doesn't exist is an empty cache, and isn't made.
+int cacheVerb(const CacheOptions& options, const Environment& environment, Console& console);
+
+/// "1000", "64K", "500M", "2.5G", "1T", also with "B" or "iB" behind: bytes, by powers of 1024.
+Result<std::uint64_t> parseSize(const std::string& text);
 
 }  // namespace sherd

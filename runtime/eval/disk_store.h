@@ -15,9 +15,10 @@
 // and never an error. A store that can't be written to (read-only, full, gone) says so once as a warning
 // and serves reads as far as it can.
 //
-// Durability. A result that took at least kSlowMs is on its way to the kernel when record() returns, so that
-// a kill of the process loses nothing; quicker ones are gathered and appended together every few
-// milliseconds.
+// Durability. A result that took at least kSlowMs is in the kernel's hands when record() returns, so that a
+// kill of the process loses nothing. Quicker ones are gathered and appended together: when 64 KiB have come
+// together, with the next slow one, by flush(), and at the end. After a loss of power what didn't reach the
+// disk is found by its checksum, and is a miss.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +37,8 @@ namespace sherd {
 
 struct DiskStoreOptions {
   std::uint64_t mostBytes = std::uint64_t{10} << 30;  ///< of objects; records are bounded by a tenth of it
-  std::function<void(const std::string&)> onWarning;  ///< told of each kind of trouble once
+  /// Told once when the store turns out not to be writable; from any thread, and not to call the store.
+  std::function<void(const std::string&)> onWarning;
 };
 
 struct DiskStoreStats {
@@ -50,8 +52,8 @@ class DiskStore {
   static constexpr double kSlowMs = 1;
 
   /// Opens the store, making the directory where it is missing. An Error where `directory` is a file, holds
-  /// something else than a store, or can neither be made nor read. O(size of the newest segments): those that
-  /// were merged are mapped and searched, not read.
+  /// something else than a store, or can neither be made nor read; where it can only be read, a warning.
+  /// O(size of the newest segments): those that were merged are mapped and searched, not read.
   static Result<std::unique_ptr<DiskStore>> open(const std::string& directory, DiskStoreOptions options = {});
   /// Appends what is gathered, and evicts where the bound is passed.
   ~DiskStore();
@@ -74,14 +76,17 @@ class DiskStore {
 
   /// Whether the value is there, as far as its file's name tells.
   bool hasObject(const Digest& digest) const;
-  /// The value, with its parts; null where it isn't there in full and sound. Reading marks it as used. Parts
-  /// that are alive in this process are shared, not loaded again.
+  /// The value, with its parts; empty where it isn't there in full and sound. Reading marks it as used.
+  /// Values that were loaded or saved before and are still alive in this process, parts among them, are
+  /// shared, not loaded again.
   Value load(const ValueType& type, const Digest& digest);
   /// Keeps the value and its parts. `ms` is what making it took: evicting weighs that against the bytes.
   /// False where it could not be kept, or its type can't be.
   bool save(const Value& value, const Digest& digest, double ms);
 
-  /// Content digests of files by path and identity, so that big inputs are read once.
+  /// Content digests of files by path and identity, so that big inputs are read once. The identity must have
+  /// been taken before the content was read. That of a file that was changed within the last 50 ms is not
+  /// kept: another change within the clock's grain would not show.
   std::optional<Digest> fileDigest(const std::string& path, const FileIdentity& identity) const;
   void setFileDigest(const std::string& path, const FileIdentity& identity, const Digest& digest);
 
@@ -91,10 +96,13 @@ class DiskStore {
 
   /// Appends what is gathered.
   void flush();
-  /// Evicts until the objects fit into `mostBytes`, the cheapest to make again per byte and the longest
-  /// unused first (GreedyDual-Size); removes what killed processes left behind; merges segments. Returns the
-  /// bytes freed.
+  /// Evicts until the objects fit into `mostBytes`, first those of the least time to make again per byte,
+  /// which counts half after every two days without use (GreedyDual-Size, with the clock for its rising bar).
+  /// Parts are objects like others: what refers to one that went is a miss. Drops the oldest records beyond a
+  /// tenth of mostBytes and history beyond a hundredth; removes what killed processes left behind; merges
+  /// segments. Returns the bytes freed.
   std::uint64_t collect(std::uint64_t mostBytes);
+  /// O(objects + records).
   DiskStoreStats stats() const;
   /// Reads everything, deletes what is unsound, and returns a line for each.
   std::vector<std::string> verify();

@@ -230,7 +230,7 @@ TEST(CommandLine, TellsVersionHelpAndMistakes) {
     EXPECT_EQ(out, "");
     return err;
   };
-  const std::string verbs = "the verbs are run, check and nodes; `sherd --help` explains them\n";
+  const std::string verbs = "the verbs are run, check, nodes and cache; `sherd --help` explains them\n";
   EXPECT_EQ(errorOf({}), "sherd needs a verb; " + verbs);
   EXPECT_EQ(errorOf({"foo"}), "there is no verb \"foo\"; " + verbs);
   EXPECT_EQ(errorOf({"rnu", "g.json"}), "there is no verb \"rnu\"; did you mean \"run\"? " + verbs);
