@@ -12,7 +12,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // The rules of the graph's reader, as regular expressions.
-constexpr const char* kName = "^[A-Za-z_][A-Za-z0-9_-]*$";
+constexpr const char* kName =
+    "^[^\\s./@${}:=\"'\\u0000-\\u001f\\u007f-\\u009f]"
+    "([^./@${}:=\"'\\u0000-\\u001f\\u007f-\\u009f]*[^\\s./@${}:=\"'\\u0000-\\u001f\\u007f-\\u009f])?$";
 constexpr const char* kLink = "^[^.]+(\\.[^.].*)?$";
 constexpr const char* kOneVariable = "^\\$\\{[^{}]+\\}$";
 constexpr const char* kSomeVariable = "\\$\\{";
@@ -124,7 +126,7 @@ Json typeSchema(const NodeType& type) {
       {{"properties",
         {{"in", inputsSchema(type)},
          {"params", described("what is left out has its default", closedObject(std::move(params)))}}}});
-  if (schema["properties"]["in"].contains("required")) schema["required"] = {"in"};
+  if (schema["properties"]["in"].contains("required")) schema["required"] = Json::array({"in"});
   if (!choices.empty()) schema["allOf"] = std::move(choices);
   return schema;
 }
@@ -171,7 +173,7 @@ Json nodeSchema(const Registry& registry) {
       closedObject({{"type", typeKeySchema(registry)},
                     {"in", links},
                     {"params", {{"type", "object"}, {"additionalProperties", reference("paramValue")}}}});
-  schema["required"] = {"type"};
+  schema["required"] = Json::array({"type"});
   if (!cases.empty()) schema["allOf"] = std::move(cases);
   return schema;
 }
@@ -194,7 +196,8 @@ Json nodesSchema(const Registry& registry) {
   Json snippets = Json::array();
   for (const NodeType* type : registry.all()) snippets.push_back(snippetJson(*type, registry));
   Json node = reference("node");
-  Json schema = namedObject({{"allOf", {std::move(node)}}, {"defaultSnippets", std::move(snippets)}});
+  Json schema =
+      namedObject({{"allOf", Json::array({std::move(node)})}, {"defaultSnippets", std::move(snippets)}});
   schema["minProperties"] = 1;
   return schema;
 }
@@ -215,12 +218,14 @@ Json definitions() {
   return all;
 }
 
+Json formatSchema() { return described("of this file", {{"const", 1}}); }
+
 Json subgraphInputSchema() {
   const Json type = {{"type", "string"}, {"minLength", 1}};
   Json full = closedObject({{"type", described("type of the values that go in", type)},
                             {"optional", {{"type", "boolean"}, {"default", false}}},
                             {"help", {{"type", "string"}}}});
-  full["required"] = {"type"};
+  full["required"] = Json::array({"type"});
   return described("type of the values that go in", {{"anyOf", {type, std::move(full)}}});
 }
 
@@ -228,32 +233,36 @@ Json subgraphOutputSchema() {
   Json full = closedObject({{"from", reference("link")},
                             {"type", {{"type", "string"}, {"minLength", 1}}},
                             {"help", {{"type", "string"}}}});
-  full["required"] = {"from"};
+  full["required"] = Json::array({"from"});
   return described("\"node.port\" within the subgraph", {{"anyOf", {reference("link"), std::move(full)}}});
 }
 
-Json subgraphSchema() {
-  Json schema = closedObject({{"help", {{"type", "string"}}},
-                              {"vars", reference("vars")},
-                              {"inputs", namedObject(subgraphInputSchema())},
-                              {"outputs", namedObject(subgraphOutputSchema())},
-                              {"subgraphs", reference("subgraphs")},
-                              {"nodes", reference("nodes")}});
-  schema["required"] = {"nodes"};
+/// Within a graph, or in a file of its own.
+Json subgraphSchema(bool isFile) {
+  Json properties{{"help", {{"type", "string"}}},
+                  {"vars", reference("vars")},
+                  {"inputs", namedObject(subgraphInputSchema())},
+                  {"outputs", namedObject(subgraphOutputSchema())},
+                  {"subgraphs", reference("subgraphs")},
+                  {"nodes", reference("nodes")}};
+  if (isFile) properties["format"] = formatSchema();
+  Json schema = closedObject(std::move(properties));
+  schema["required"] = isFile ? Json::array({"format", "nodes"}) : Json::array({"nodes"});
   return schema;
 }
 
 Json subgraphsSchema() {
-  const Json file = described("a file with the subgraph", {{"type", "string"}, {"minLength", 1}});
+  const Json file = described("a file with the subgraph",
+                              {{"type", "string"}, {"minLength", 1}, {"not", {{"pattern", kSomeVariable}}}});
   return described("subgraphs by name, which nodes name as their type",
                    namedObject({{"anyOf", {reference("subgraph"), file}}}));
 }
 
-Json keysSchema() {
+Json fileSchema() {
   const Json nodeNames = {{"type", {"array", "string"}}, {"items", {{"type", "string"}}}};
   const Json values = {{"type", "array"}, {"minItems", 1}, {"items", reference("variable")}};
-  return closedObject(
-      {{"format", described("of this file", {{"const", 1}})},
+  Json schema = closedObject(
+      {{"format", formatSchema()},
        {"fps",
         described("frames per second", {{"type", "number"}, {"exclusiveMinimum", 0}, {"default", 24}})},
        {"vars", reference("vars")},
@@ -262,7 +271,9 @@ Json keysSchema() {
        {"wedge", described("a list of values for each of these variables", namedObject(values))},
        {"targets", described("names for groups of nodes, for --target", namedObject(nodeNames))},
        {"subgraphs", reference("subgraphs")},
-       {"nodes", described("nodes by name, in any order", {{"allOf", {reference("nodes")}}})}});
+       {"nodes", described("nodes by name, in any order", {{"allOf", Json::array({reference("nodes")})}})}});
+  schema["required"] = {"format", "nodes"};
+  return schema;
 }
 
 /// In a file without subgraphs every type has its version.
@@ -276,16 +287,20 @@ Json versionsWithoutSubgraphs() {
 
 std::string graphSchema(const Registry& registry) {
   Json all = definitions();
-  all["subgraph"] = subgraphSchema();
+  all["graph"] = fileSchema();
+  all["subgraphFile"] = subgraphSchema(true);
+  all["subgraph"] = subgraphSchema(false);
   all["subgraphs"] = subgraphsSchema();
   all["nodes"] = nodesSchema(registry);
   all["node"] = nodeSchema(registry);
   for (const NodeType* type : registry.all()) all[versioned(*type)] = typeSchema(*type);
 
   Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "sherd graph"}};
-  schema.update(keysSchema());
-  schema["required"] = {"format", "nodes"};
-  schema.update(versionsWithoutSubgraphs());
+  schema["type"] = "object";
+  schema["if"] = {{"anyOf", {{{"required", {"inputs"}}}, {{"required", {"outputs"}}}}}};
+  schema["then"] = reference("subgraphFile");
+  schema["else"] = reference("graph");
+  schema["allOf"] = Json::array({versionsWithoutSubgraphs()});
   schema["allowComments"] = true;
   schema["allowTrailingCommas"] = true;
   schema["definitions"] = std::move(all);
