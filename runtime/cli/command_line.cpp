@@ -44,9 +44,7 @@ struct Commands {
     app.require_subcommand(1);
     addRun();
     addCheck();
-    nodesApp = app.add_subcommand("nodes", "list the node types, or tell all about one");
-    nodesApp->add_option("TYPE", nodes.type, "a node type");
-    nodesApp->add_flag("--json", nodes.json, "as JSON");
+    addNodes();
     addCache();
   }
 
@@ -69,6 +67,17 @@ struct Commands {
     runApp->add_flag("--keep-going", run.keepGoing, "after a failure, go on with what doesn't depend on it");
     runApp->add_flag("--json", run.json, "print one JSON object a line");
     runApp->add_flag("--quiet", run.quiet, "print warnings and errors only");
+  }
+
+  void addNodes() {
+    nodesApp = app.add_subcommand("nodes", "list the node types, or tell all about one");
+    auto* type = nodesApp->add_option("TYPE", nodes.type, "a node type");
+    auto* json = nodesApp->add_flag("--json", nodes.json, "as JSON");
+    auto* schema =
+        nodesApp->add_flag("--schema", nodes.schema, "print a JSON Schema of graph files, for editors");
+    auto* markdown = nodesApp->add_flag("--markdown", nodes.markdown, "print the node reference as Markdown");
+    schema->excludes(type)->excludes(json)->excludes(markdown);
+    markdown->excludes(type)->excludes(json);
   }
 
   void addCheck() {

@@ -1,9 +1,11 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/node_reference.h"
+#include "cli/node_words.h"
+#include "cli/schema.h"
+#include "cli/text_table.h"
 #include "cli/verbs.h"
 #include "graph/param.h"
 #include "graph/suggest.h"
@@ -13,82 +15,46 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string versioned(const NodeType& type) { return type.name + '@' + std::to_string(type.version); }
-
-/// Characters, not bytes: units such as m³ take more of the latter.
-std::size_t widthOf(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
-using Row = std::vector<std::string>;
-
-/// Columns of text, aligned; the last is wrapped to what is left of the line.
-void printTable(const std::vector<Row>& rows, int width, std::ostream& out) {
-  std::vector<std::size_t> widths;
-  for (const Row& row : rows)
-    for (std::size_t c = 0; c + 1 < row.size(); ++c) {
-      if (widths.size() <= c) widths.push_back(0);
-      widths[c] = std::max(widths[c], widthOf(row[c]));
-    }
-  for (const Row& row : rows) {
-    std::string line = "  ";
-    for (std::size_t c = 0; c + 1 < row.size(); ++c)
-      line += row[c] + std::string(widths[c] - widthOf(row[c]) + 2, ' ');
-    const std::size_t indent = widthOf(line);
-    const std::size_t right =
-        std::max<std::size_t>(indent + 30, static_cast<std::size_t>(std::max(width, 40)));
-    std::size_t column = indent;
-    const std::string& text = row.back();
-    for (std::size_t begin = 0; begin < text.size();) {
-      const std::size_t end = std::min(text.find(' ', begin), text.size());
-      const std::string word = text.substr(begin, end - begin);
-      if (column > indent && column + widthOf(word) > right) {
-        line += '\n' + std::string(indent, ' ');
-        column = indent;
-      }
-      line += word + ' ';
-      column += widthOf(word) + 1;
-      begin = end + 1;
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    out << line << '\n';
-  }
-}
-
-void printPorts(const char* title, const std::vector<PortInfo>& ports, bool inputs, Console& console) {
-  if (ports.empty()) return;
+/// Nothing where there are no rows.
+void printSection(const char* title, const std::vector<Row>& rows, Console& console) {
+  if (rows.empty()) return;
   console.out << '\n' << title << '\n';
-  std::vector<Row> rows;
-  for (const PortInfo& port : ports)
-    rows.push_back({port.name, port.type, (inputs && !port.required ? "(optional) " : "") + port.help});
   printTable(rows, console.width, console.out);
 }
 
-std::string defaultText(const ParamInfo& info) {
-  if (info.required) return "required";
-  std::string text = paramText(info.fallback);
-  if (!info.unit.empty()) text += ' ' + info.unit;
-  return text;
+void printPorts(const char* title, const std::vector<PortInfo>& ports, bool inputs, Console& console) {
+  std::vector<Row> rows;
+  for (const PortInfo& port : ports)
+    rows.push_back({port.name, port.type, inputs ? helpText(port) : port.help});
+  printSection(title, rows, console);
 }
 
-void printType(const NodeType& type, Console& console) {
+void printParams(const NodeType& type, Console& console) {
+  std::vector<Row> rows;
+  for (const ParamInfo& info : type.params)
+    rows.push_back({info.name, kindText(info.kind), defaultText(info), helpText(info)});
+  printSection("Parameters, with their defaults", rows, console);
+}
+
+void printHistory(const NodeType& type, Console& console) {
+  std::vector<Row> waits, versions;
+  for (const std::string& wait : waitTexts(type)) waits.push_back({wait});
+  printSection("Cancelling waits for", waits, console);
+  for (const auto& [step, changes] : migrationTexts(type)) versions.push_back({step, changes});
+  printSection("Older versions, which still load", versions, console);
+  if (!type.formerNames.empty()) printSection("Former names", {{quotedList(type.formerNames)}}, console);
+}
+
+void printType(const NodeType& type, const Registry& registry, Console& console) {
   console.out << versioned(type) << (type.writesFiles ? "  (writes files)" : "") << '\n';
   printTable({{type.help}}, console.width, console.out);
   printPorts("Inputs", type.inputs, true, console);
-  if (!type.params.empty()) {
-    console.out << "\nParameters, with their defaults\n";
-    std::vector<Row> rows;
-    for (const ParamInfo& info : type.params) {
-      std::string help = info.help;
-      const std::string range =
-          info.kind == ParamKind::Choice ? "one of " + quotedList(info.choices) : rangeText(info);
-      if (!range.empty()) help += (help.empty() ? "" : "; ") + range;
-      rows.push_back({info.name, kindText(info.kind), defaultText(info), help});
-    }
-    printTable(rows, console.width, console.out);
-  }
+  printParams(type, console);
   printPorts("Outputs", type.outputs, false, console);
+  printHistory(type, console);
+  console.out << "\nA node of it, to paste\n"
+              << snippetText(snippetOf(type, registry), static_cast<std::size_t>(std::max(console.width, 40)))
+              << '\n';
 }
 
 Json portsJson(const std::vector<PortInfo>& ports, bool inputs) {
@@ -96,6 +62,7 @@ Json portsJson(const std::vector<PortInfo>& ports, bool inputs) {
   for (const PortInfo& port : ports) {
     Json entry{{"name", port.name}, {"type", port.type}};
     if (inputs) entry["required"] = port.required;
+    if (port.gathers) entry["gathers"] = true;
     entry["help"] = port.help;
     list.push_back(std::move(entry));
   }
@@ -116,42 +83,72 @@ Json paramJson(const ParamInfo& info) {
 Json typeJson(const NodeType& type) {
   Json params = Json::array();
   for (const ParamInfo& info : type.params) params.push_back(paramJson(info));
+  Json waits = Json::array();
+  for (const Uninterruptible& wait : type.uninterruptibles)
+    waits.push_back({{"call", wait.call}, {"longestMs", wait.longestMs}});
   return Json{{"name", type.name},
               {"version", type.version},
               {"help", type.help},
               {"writesFiles", type.writesFiles},
+              {"formerNames", type.formerNames},
+              {"uninterruptible", std::move(waits)},
               {"inputs", portsJson(type.inputs, true)},
               {"outputs", portsJson(type.outputs, false)},
               {"params", std::move(params)}};
 }
 
+bool migratesFrom(const NodeType& type, const std::string& asked) {
+  return std::any_of(type.migrations.begin(), type.migrations.end(), [&](const Migration& migration) {
+    return asked == type.name + '@' + std::to_string(migration.from);
+  });
+}
+
+/// The type that is asked for, "Name" or "Name@N", or null where there is none; then that has been told.
+const NodeType* findType(const std::string& asked, const Registry& registry, Console& console) {
+  const std::string name = asked.substr(0, asked.find('@'));
+  if (const NodeType* type = registry.find(name)) {
+    if (name != asked && versioned(*type) != asked)
+      console.err << "this is " << versioned(*type) << "; " << inQuotes(asked) << " is "
+                  << (migratesFrom(*type, asked) ? "an older version, which still loads" : "not known")
+                  << '\n';
+    return type;
+  }
+  std::vector<std::string> names;
+  for (const NodeType* known : registry.all()) names.push_back(known->name);
+  console.err << "there is no node type " << inQuotes(asked) << "; "
+              << suggestion(name, names, "node types", "sherd nodes") << '\n';
+  return nullptr;
+}
+
+void printList(const std::vector<const NodeType*>& types, Console& console) {
+  std::vector<Row> rows;
+  for (const NodeType* type : types) rows.push_back({versioned(*type), type->help});
+  printTable(rows, console.width, console.out);
+  console.out << "\n`sherd nodes TYPE` tells of inputs, parameters and outputs.\n";
+}
+
+void printJson(const std::vector<const NodeType*>& types, Console& console) {
+  Json list = Json::array();
+  for (const NodeType* type : types) list.push_back(typeJson(*type));
+  console.out << list.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
 }  // namespace
 
 int nodesVerb(const NodesOptions& options, const Registry& registry, Console& console) {
-  std::vector<const NodeType*> types = registry.all();
-  if (!options.type.empty()) {
-    const NodeType* type = registry.find(options.type.substr(0, options.type.find('@')));
-    if (type == nullptr) {
-      std::vector<std::string> names;
-      for (const NodeType* known : types) names.push_back(known->name);
-      console.err << "there is no node type " << inQuotes(options.type) << "; "
-                  << suggestion(options.type, names, "node types", "sherd nodes") << '\n';
-      return kWrongInput;
-    }
-    types = {type};
-  }
-  if (options.json) {
-    Json list = Json::array();
-    for (const NodeType* type : types) list.push_back(typeJson(*type));
-    console.out << list.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
-  } else if (!options.type.empty()) {
-    printType(*types.front(), console);
-  } else {
-    std::vector<Row> rows;
-    for (const NodeType* type : types) rows.push_back({versioned(*type), type->help});
-    printTable(rows, console.width, console.out);
-    console.out << "\n`sherd nodes TYPE` tells of inputs, parameters and outputs.\n";
-  }
+  const NodeType* one = options.type.empty() ? nullptr : findType(options.type, registry, console);
+  if (!options.type.empty() && one == nullptr) return kWrongInput;
+  const auto types = one == nullptr ? registry.all() : std::vector<const NodeType*>{one};
+  if (options.schema)
+    console.out << graphSchema(registry);
+  else if (options.markdown)
+    console.out << nodeReference(registry);
+  else if (options.json)
+    printJson(types, console);
+  else if (one != nullptr)
+    printType(*one, registry, console);
+  else
+    printList(types, console);
   return kOk;
 }
 

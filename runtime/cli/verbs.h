@@ -31,8 +31,10 @@ int checkVerb(const CheckOptions& options, const Registry& registry, const Envir
               Console& console);
 
 struct NodesOptions {
-  std::string type;  ///< empty: all
-  bool json = false;
+  std::string type;       ///< "Name" or "Name@N"; empty: all
+  bool json = false;      ///< as JSON
+  bool schema = false;    ///< a JSON Schema of graph files instead, of all types
+  bool markdown = false;  ///< the node reference instead, of all types
 };
 int nodesVerb(const NodesOptions& options, const Registry& registry, Console& console);
 

@@ -37,8 +37,27 @@ Result<void> checkTable(const NodeType& type) {
 
 }  // namespace
 
+Result<void> Registry::checkValues(const NodeType& type) const {
+  for (const auto* ports : {&type.inputs, &type.outputs})
+    for (const PortInfo& port : *ports) {
+      const auto known = port.value == nullptr ? values_.end() : values_.find(port.type);
+      if (known == values_.end() || known->second.objectBytes == port.value->objectBytes) continue;
+      return failure("node type " + inQuotes(type.name) + ": its " + port.type + " has " +
+                         std::to_string(port.value->objectBytes) + " bytes, that of " +
+                         inQuotes(known->second.nodeType) + " has " +
+                         std::to_string(known->second.objectBytes),
+                     "build both node packs against the same headers");
+    }
+  return {};
+}
+
 Result<void> Registry::add(NodeType type) {
   SHERD_CHECK(checkTable(type));
+  SHERD_CHECK(checkValues(type));
+  for (const auto* ports : {&type.inputs, &type.outputs})
+    for (const PortInfo& port : *ports)
+      if (port.value != nullptr)
+        values_.try_emplace(port.type, KnownValue{port.value->objectBytes, type.name});
   const auto found = types_.find(type.name);
   if (found == types_.end()) {
     std::string name = type.name;

@@ -12,7 +12,9 @@ namespace sherd {
 
 class Registry {
  public:
-  /// Adds a type; an Error where one of the same name and version is there already.
+  /// Adds a type; an Error where one of the same name and version is there already, or where a value on its
+  /// ports has another size than the same type's values elsewhere: its pack is then built against other
+  /// headers.
   Result<void> add(NodeType type);
   /// The newest version of the type, or null.
   const NodeType* find(const std::string& name) const;
@@ -20,7 +22,14 @@ class Registry {
   std::vector<const NodeType*> all() const;
 
  private:
+  struct KnownValue {
+    std::size_t objectBytes = 0;
+    std::string nodeType;  ///< that had it first
+  };
+  Result<void> checkValues(const NodeType& type) const;
+
   std::map<std::string, NodeType> types_;
+  std::map<std::string, KnownValue> values_;  ///< by ValueType::name
 };
 
 }  // namespace sherd

@@ -44,8 +44,19 @@ Result<void> checkHandshake(const std::string& path, const PluginHandshake& hand
   if (std::string_view(handshake.build) != kHandshake.build)
     return failure(name + " is built with " + handshake.build + ", this program with " + kHandshake.build,
                    remedy);
-  if (handshake.nodeTypeBytes != kHandshake.nodeTypeBytes || handshake.nodeIoBytes != kHandshake.nodeIoBytes)
+  if (std::string_view(handshake.version) != kHandshake.version)
+    return failure(
+        name + " is built for sherd " + handshake.version + ", this is sherd " + kHandshake.version, remedy);
+  if (handshake.layoutCount != kHandshake.layoutCount)
     return failure(name + " is built against other headers than this program", remedy);
+  for (std::size_t i = 0; i < kHandshake.layoutCount; ++i) {
+    const PluginLayout &theirs = handshake.layouts[i], &ours = kHandshake.layouts[i];
+    if (theirs.bytes != ours.bytes || std::string_view(theirs.name) != ours.name)
+      return failure(name + " is built against other headers than this program: " + theirs.name + " has " +
+                         std::to_string(theirs.bytes) + " bytes there, and " + ours.name + ' ' +
+                         std::to_string(ours.bytes) + " here",
+                     remedy);
+  }
   return {};
 }
 

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <exception>
 #include <initializer_list>
+#include <iterator>
 #include <string>
 
 #include "graph/node_type.h"
@@ -20,31 +21,86 @@
 
 namespace sherd {
 
-/// Raised when a class that crosses the border changes its layout or meaning.
-inline constexpr std::uint32_t kPluginAbi = 1;
+/// Raised when a class that crosses the border changes its layout or meaning, or kLayouts its entries.
+inline constexpr std::uint32_t kPluginAbi = 2;
 
 #define SHERD_TEXT2(x) #x
 #define SHERD_TEXT(x) SHERD_TEXT2(x)
+#if !defined(SHERD_VERSION)
+#error "SHERD_VERSION is not defined: link the CMake target sherd::graph, or use sherd_add_node_pack"
+#endif
+
 #ifdef __GLIBCXX__
 #define SHERD_LIBRARY_IDENTITY "libstdc++ abi " SHERD_TEXT(_GLIBCXX_USE_CXX11_ABI)
 #else
 #define SHERD_LIBRARY_IDENTITY "libc++ " SHERD_TEXT(_LIBCPP_VERSION)
 #endif
-/// Compiler and standard library.
-#define SHERD_BUILD_IDENTITY "C++ " SHERD_TEXT(__cplusplus) ", " __VERSION__ ", " SHERD_LIBRARY_IDENTITY
+// Containers of another layout.
+#ifdef _GLIBCXX_DEBUG
+#define SHERD_DEBUG_IDENTITY ", _GLIBCXX_DEBUG"
+#else
+#define SHERD_DEBUG_IDENTITY ""
+#endif
+// Both sides or none: the sanitizers' runtimes see only what is instrumented.
+#if defined(__SANITIZE_ADDRESS__)
+#define SHERD_SANITIZER_IDENTITY ", address sanitizer"
+#elif defined(__SANITIZE_THREAD__)
+#define SHERD_SANITIZER_IDENTITY ", thread sanitizer"
+#else
+#define SHERD_SANITIZER_IDENTITY ""
+#endif
+// Eigen aligns, allocates and frees by the widest vectors that it may use.
+#if defined(__AVX512F__)
+#define SHERD_VECTOR_IDENTITY ", AVX-512"
+#elif defined(__AVX__)
+#define SHERD_VECTOR_IDENTITY ", AVX"
+#else
+#define SHERD_VECTOR_IDENTITY ""
+#endif
+/// Compiler, standard library, and the options that change layouts. Optimisation and assertions (NDEBUG) do
+/// not: a pack may be built for debugging.
+#define SHERD_BUILD_IDENTITY                                                                       \
+  "C++ " SHERD_TEXT(__cplusplus) ", " __VERSION__ ", " SHERD_LIBRARY_IDENTITY SHERD_DEBUG_IDENTITY \
+      SHERD_SANITIZER_IDENTITY SHERD_VECTOR_IDENTITY
 
-/// What a pack exports as the C symbol `sherd_pack_handshake`. The order of the fields never changes.
+/// A class that crosses the border and its size: catches a change of layout that forgot to raise kPluginAbi.
+/// That values on wires agree is for the registry to see (ValueType::objectBytes).
+struct PluginLayout {
+  const char* name;
+  std::uint64_t bytes;
+};
+inline constexpr PluginLayout kLayouts[] = {
+    {"NodeType", sizeof(NodeType)},
+    {"NodeIo", sizeof(NodeIo)},
+    {"PortInfo", sizeof(PortInfo)},
+    {"ParamInfo", sizeof(ParamInfo)},
+    {"ParamValue", sizeof(ParamValue)},
+    {"Migration", sizeof(Migration)},
+    {"MigrationStep", sizeof(MigrationStep)},
+    {"Uninterruptible", sizeof(Uninterruptible)},
+    {"ValueType", sizeof(ValueType)},
+    {"Value", sizeof(Value)},
+    {"ArchiveWriter", sizeof(ArchiveWriter)},
+    {"ArchiveReader", sizeof(ArchiveReader)},
+    {"Hasher", sizeof(Hasher)},
+    {"Exec", sizeof(Exec)},
+    {"Error", sizeof(Error)},
+    {"Registry", sizeof(Registry)},
+};
+
+/// What a pack exports as the C symbol `sherd_pack_handshake`. The order of the fields never changes; those
+/// behind `abi` may differ in another ABI, and are read only when it is the program's.
 struct PluginHandshake {
-  std::uint32_t magic;  ///< kPluginMagic
-  std::uint32_t abi;    ///< kPluginAbi
-  const char* build;    ///< SHERD_BUILD_IDENTITY
-  std::uint64_t
-      nodeTypeBytes;  ///< sizeof(NodeType): catches a change of layout that forgot to raise kPluginAbi
-  std::uint64_t nodeIoBytes;  ///< sizeof(NodeIo)
+  std::uint32_t magic;          ///< kPluginMagic
+  std::uint32_t abi;            ///< kPluginAbi
+  const char* build;            ///< SHERD_BUILD_IDENTITY
+  const char* version;          ///< SHERD_VERSION, of the headers
+  const PluginLayout* layouts;  ///< kLayouts
+  std::uint64_t layoutCount;
 };
 inline constexpr std::uint32_t kPluginMagic = 0x73685244;  // "shRD"
-inline constexpr PluginHandshake kHandshake{kPluginMagic, kPluginAbi, SHERD_BUILD_IDENTITY, sizeof(NodeType),
-                                            sizeof(NodeIo)};
+inline constexpr PluginHandshake kHandshake{kPluginMagic,  kPluginAbi, SHERD_BUILD_IDENTITY,
+                                            SHERD_VERSION, kLayouts,   std::size(kLayouts)};
 
 /// What a pack exports as the C symbol `sherd_pack_register`: adds its types, or says why not and returns
 /// false.

@@ -1,5 +1,6 @@
 // One node pack in variants: a good one, and ones that a program must refuse before it calls anything in
 // them.
+#include <array>
 #include <cstdlib>
 
 #include "plugin/plugin.h"
@@ -19,13 +20,52 @@ sherd::NodeType packedNode() {
 
 }  // namespace
 
-#if defined(PACK_GOOD)
+#if defined(PACK_OTHER_VALUE)
+namespace {
+/// A value type whose layout differs from pack to pack.
+struct Shape {
+  static constexpr const char* typeName = "Shape";
+  std::int64_t numbers[3];
+};
+struct OlderShape {
+  static constexpr const char* typeName = "Shape";
+  std::int64_t numbers[2];
+};
+template <class S>
+void hashValue(sherd::Hasher& hasher, const S& shape) {
+  for (const std::int64_t number : shape.numbers) hasher.add(number);
+}
+template <class S>
+std::size_t byteSize(const S&) {
+  return sizeof(S);
+}
+
+sherd::NodeType makeShapeNode() {
+  return sherd::NodeBuilder<NoParams>("MakeShape", 1, "Makes a shape.")
+      .output<Shape>("shape", "a shape")
+      .run([](const NoParams&, sherd::NodeIo&) -> sherd::Result<void> { return {}; });
+}
+sherd::NodeType takeShapeNode() {
+  return sherd::NodeBuilder<NoParams>("TakeShape", 1, "Takes a shape of other headers.")
+      .input<OlderShape>("shape", "a shape")
+      .run([](const NoParams&, sherd::NodeIo&) -> sherd::Result<void> { return {}; });
+}
+}  // namespace
+SHERD_NODE_PACK(makeShapeNode, takeShapeNode)
+#elif defined(PACK_GOOD)
 SHERD_NODE_PACK(packedNode)
 #elif defined(PACK_TWICE)
 SHERD_NODE_PACK(packedNode, packedNode)
 #else
 #if !defined(PACK_NO_HANDSHAKE)
 namespace {
+#if defined(PACK_OTHER_LAYOUT)
+constexpr auto kOtherLayouts = [] {
+  auto layouts = std::to_array(sherd::kLayouts);
+  layouts[8].bytes += 8;
+  return layouts;
+}();
+#endif
 constexpr sherd::PluginHandshake handshake() {
   sherd::PluginHandshake made = sherd::kHandshake;
 #if defined(PACK_OTHER_ABI)
@@ -33,7 +73,11 @@ constexpr sherd::PluginHandshake handshake() {
 #elif defined(PACK_OTHER_BUILD)
   made.build = "another compiler";
 #elif defined(PACK_OTHER_LAYOUT)
-  made.nodeTypeBytes += 8;
+  made.layouts = kOtherLayouts.data();
+#elif defined(PACK_FEWER_LAYOUTS)
+  made.layoutCount -= 1;
+#elif defined(PACK_OTHER_VERSION)
+  made.version = "0.0.1";
 #endif
   return made;
 }
