@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -20,12 +19,6 @@ struct Listed {
   std::string type;
   bool usable = false;
 };
-
-/// initialize() is guarded by itself, but not against exceptions of two threads at once.
-void initializeOnce() {
-  static std::once_flag once;
-  std::call_once(once, [] { openvdb::initialize(); });
-}
 
 std::vector<Listed> listGrids(openvdb::io::File& file) {
   std::vector<Listed> grids;
@@ -115,7 +108,7 @@ Result<ScalarGrid> readVdb(const ReadVdbParams& params, const Exec& exec) {
   if (!(params.unit > 0) || !std::isfinite(params.unit))
     return failure("a unit has to be a length above zero", "1 for metres, 0.01 for centimetres", "unit");
   try {
-    initializeOnce();
+    initializeOpenVdb();
     return read(params, exec);
   } catch (const std::exception& e) {
     return failure(fmt::format("'{}' cannot be read as OpenVDB: {}", params.file, e.what()),

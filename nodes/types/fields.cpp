@@ -1,44 +1,59 @@
 #include "types/fields.h"
 
+#include "base/value_type.h"
+#include "types/value_bytes.h"
+
 namespace sherd {
+
+static_assert(ArchivedValue<Impact> && ArchivedValue<EnergyField> && ArchivedValue<WeightField>);
+static_assert(sizeof(Contact) == 8 * sizeof(double), "contacts are hashed and saved as they lie in memory");
+
 namespace {
 
-void hashVec(Hasher& hasher, const Vec3& v) { hasher.add(v.x()).add(v.y()).add(v.z()); }
-
 void hashMotion(Hasher& hasher, const RigidMotion& m) {
-  hashVec(hasher, m.position);
-  hasher.add(m.rotation.w()).add(m.rotation.x()).add(m.rotation.y()).add(m.rotation.z());
-  hashVec(hasher, m.velocity);
-  hashVec(hasher, m.angularVelocity);
+  hashBits(hasher, m.position);
+  hashBits(hasher, m.rotation);
+  hashBits(hasher, m.velocity);
+  hashBits(hasher, m.angularVelocity);
 }
+
+void putMotion(ArchiveWriter& to, const RigidMotion& m) {
+  putBits(to, m.position);
+  putBits(to, m.rotation);
+  putBits(to, m.velocity);
+  putBits(to, m.angularVelocity);
+}
+
+void getMotion(ArchiveReader& from, RigidMotion& m) {
+  getBits(from, m.position);
+  getBits(from, m.rotation);
+  getBits(from, m.velocity);
+  getBits(from, m.angularVelocity);
+}
+
+/// The number of nodes and of tetrahedra that a field is about; none without a mesh.
+std::size_t nodeCount(const std::shared_ptr<const TetMesh>& tets) { return tets ? tets->nodes.size() : 0; }
+std::size_t tetCount(const std::shared_ptr<const TetMesh>& tets) { return tets ? tets->tets.size() : 0; }
 
 }  // namespace
 
-void hashValue(Hasher& hasher, const Material& m) {
-  hasher.add(m.density).add(m.youngModulus).add(m.poissonRatio);
-}
-
 void hashValue(Hasher& hasher, const Impact& impact) {
-  hasher.add(impact.hit).add(impact.time).add(impact.contacts.size());
-  hashVec(hasher, impact.centreOfMass);
-  for (const Contact& c : impact.contacts) {
-    hashVec(hasher, c.point);
-    hashVec(hasher, c.impulse);
-    hasher.add(c.duration).add(c.radius);
-  }
+  hasher.add(impact.hit).add(impact.contacts);
+  hashBits(hasher, impact.time);
+  hashBits(hasher, impact.centreOfMass);
   hashMotion(hasher, impact.before);
   hashMotion(hasher, impact.after);
 }
 
 void hashValue(Hasher& hasher, const EnergyField& field) {
-  if (field.tets) hashValue(hasher, *field.tets);
-  hashValue(hasher, field.material);
+  hashPart(hasher, field.tets);
+  hashBits(hasher, field.material);
   hasher.add(field.tetEnergy).add(field.nodeEnergy).add(field.displacement);
 }
 
 void hashValue(Hasher& hasher, const WeightField& field) {
-  if (field.tets) hashValue(hasher, *field.tets);
-  hashValue(hasher, field.material);
+  hashPart(hasher, field.tets);
+  hashBits(hasher, field.material);
   hasher.add(field.weight).add(field.volume);
 }
 
@@ -53,6 +68,67 @@ std::size_t byteSize(const EnergyField& field) {
 
 std::size_t byteSize(const WeightField& field) {
   return (field.weight.size() + field.volume.size()) * sizeof(double);
+}
+
+void saveValue(ArchiveWriter& to, const Impact& impact) {
+  to.put(impact.hit);
+  to.put(impact.time);
+  putBits(to, impact.centreOfMass);
+  to.array(impact.contacts);
+  putMotion(to, impact.before);
+  putMotion(to, impact.after);
+}
+
+std::optional<Impact> loadValue(ArchiveReader& from, std::type_identity<Impact>) {
+  std::optional<Impact> impact(std::in_place);
+  from.get(impact->hit);
+  from.get(impact->time);
+  getBits(from, impact->centreOfMass);
+  from.array(impact->contacts);
+  getMotion(from, impact->before);
+  getMotion(from, impact->after);
+  if (!from.ok()) impact.reset();
+  return impact;
+}
+
+void saveValue(ArchiveWriter& to, const EnergyField& field) {
+  to.part(field.tets);
+  putBits(to, field.material);
+  to.array(field.tetEnergy);
+  to.array(field.nodeEnergy);
+  to.array(field.displacement);
+}
+
+std::optional<EnergyField> loadValue(ArchiveReader& from, std::type_identity<EnergyField>) {
+  std::optional<EnergyField> field(std::in_place);
+  field->tets = from.part<TetMesh>();
+  getBits(from, field->material);
+  from.array(field->tetEnergy);
+  from.array(field->nodeEnergy);
+  from.array(field->displacement);
+  const std::size_t nodes = nodeCount(field->tets), moved = field->displacement.size();
+  if (!from.ok() || field->tetEnergy.size() != tetCount(field->tets) || field->nodeEnergy.size() != nodes ||
+      (moved != 0 && moved != nodes))
+    field.reset();
+  return field;
+}
+
+void saveValue(ArchiveWriter& to, const WeightField& field) {
+  to.part(field.tets);
+  putBits(to, field.material);
+  to.array(field.weight);
+  to.array(field.volume);
+}
+
+std::optional<WeightField> loadValue(ArchiveReader& from, std::type_identity<WeightField>) {
+  std::optional<WeightField> field(std::in_place);
+  field->tets = from.part<TetMesh>();
+  getBits(from, field->material);
+  from.array(field->weight);
+  from.array(field->volume);
+  const std::size_t nodes = nodeCount(field->tets);
+  if (!from.ok() || field->weight.size() != nodes || field->volume.size() != nodes) field.reset();
+  return field;
 }
 
 }  // namespace sherd

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <type_traits>
 #include <vector>
 
+#include "base/archive.h"
 #include "base/hash.h"
 #include "types/material.h"
 #include "types/tet_mesh.h"
@@ -30,6 +33,7 @@ struct RigidMotion {
 /// The first impact of a body, or that there was none in the time given.
 struct Impact {
   static constexpr const char* typeName = "Impact";
+  static constexpr int archiveVersion = 1;
   bool hit = false;
   double time = 0;                   ///< s since the release
   Vec3 centreOfMass = Vec3::Zero();  ///< m, rest space
@@ -40,6 +44,7 @@ struct Impact {
 /// Quasi-static strain energy of the body under the impact's loads.
 struct EnergyField {
   static constexpr const char* typeName = "Energy";
+  static constexpr int archiveVersion = 1;
   std::shared_ptr<const TetMesh> tets;
   Material material;
   std::vector<double> tetEnergy;   ///< J, per tetrahedron
@@ -50,18 +55,24 @@ struct EnergyField {
 /// w_n of design section 4, point 1: β V (e/V)^α, rescaled. The only weights that later steps use.
 struct WeightField {
   static constexpr const char* typeName = "Weights";
+  static constexpr int archiveVersion = 1;
   std::shared_ptr<const TetMesh> tets;
   Material material;
   std::vector<double> weight;  ///< J, per node, ≥ 0
   std::vector<double> volume;  ///< m³, per node: V_n, used where a cell's weights are all zero
 };
 
-void hashValue(Hasher& hasher, const Material& material);
 void hashValue(Hasher& hasher, const Impact& impact);
 void hashValue(Hasher& hasher, const EnergyField& field);
 void hashValue(Hasher& hasher, const WeightField& field);
 std::size_t byteSize(const Impact& impact);
 std::size_t byteSize(const EnergyField& field);
 std::size_t byteSize(const WeightField& field);
+void saveValue(ArchiveWriter& to, const Impact& impact);
+std::optional<Impact> loadValue(ArchiveReader& from, std::type_identity<Impact>);
+void saveValue(ArchiveWriter& to, const EnergyField& field);
+std::optional<EnergyField> loadValue(ArchiveReader& from, std::type_identity<EnergyField>);
+void saveValue(ArchiveWriter& to, const WeightField& field);
+std::optional<WeightField> loadValue(ArchiveReader& from, std::type_identity<WeightField>);
 
 }  // namespace sherd

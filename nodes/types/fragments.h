@@ -2,9 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "base/archive.h"
 #include "base/hash.h"
 #include "types/material.h"
 #include "types/tet_mesh.h"
@@ -41,6 +44,7 @@ struct FractureCounts {
 
 struct Fragments {
   static constexpr const char* typeName = "Pieces";
+  static constexpr int archiveVersion = 1;
   std::shared_ptr<const TetMesh> tets;  ///< tets->surface is the source surface
   Material material;
   std::vector<Vec3> positions;                           ///< m; the first ones are the source's, in its order
@@ -67,5 +71,7 @@ V cornerAttribute(const Fragments& f, const Piece& piece, std::size_t t, std::si
 
 void hashValue(Hasher& hasher, const Fragments& fragments);
 std::size_t byteSize(const Fragments& fragments);
+void saveValue(ArchiveWriter& to, const Fragments& fragments);
+std::optional<Fragments> loadValue(ArchiveReader& from, std::type_identity<Fragments>);
 
 }  // namespace sherd

@@ -3,8 +3,11 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
+#include <type_traits>
 #include <vector>
 
+#include "base/archive.h"
 #include "base/hash.h"
 #include "types/material.h"
 #include "types/tet_mesh.h"
@@ -14,6 +17,7 @@ namespace sherd {
 /// Coordinates in which straight distances are the body's distances (design section 4, point 7).
 struct Embedding {
   static constexpr const char* typeName = "Embedding";
+  static constexpr int archiveVersion = 1;
   enum class Metric { Euclidean, Interior };
   std::shared_ptr<const TetMesh> tets;
   Metric metric = Metric::Euclidean;
@@ -24,6 +28,7 @@ struct Embedding {
 /// Sites p̄_j and what the search for them found.
 struct Sites {
   static constexpr const char* typeName = "Sites";
+  static constexpr int archiveVersion = 1;
   Eigen::MatrixXd positions;  ///< d × N, m, in the embedding; N ≥ 1
   double energy = 0;          ///< J·m², E_D of these sites
   double gamma = 0;           ///< J·m², the threshold asked for; says nothing where the degree was given
@@ -33,6 +38,7 @@ struct Sites {
 /// Every node's nearest site.
 struct Partition {
   static constexpr const char* typeName = "Cells";
+  static constexpr int archiveVersion = 1;
   std::shared_ptr<const Embedding> embedding;
   Material material;
   Eigen::MatrixXd sites;     ///< d × N, m
@@ -52,5 +58,11 @@ void hashValue(Hasher& hasher, const Partition& partition);
 std::size_t byteSize(const Embedding& embedding);
 std::size_t byteSize(const Sites& sites);
 std::size_t byteSize(const Partition& partition);
+void saveValue(ArchiveWriter& to, const Embedding& embedding);
+std::optional<Embedding> loadValue(ArchiveReader& from, std::type_identity<Embedding>);
+void saveValue(ArchiveWriter& to, const Sites& sites);
+std::optional<Sites> loadValue(ArchiveReader& from, std::type_identity<Sites>);
+void saveValue(ArchiveWriter& to, const Partition& partition);
+std::optional<Partition> loadValue(ArchiveReader& from, std::type_identity<Partition>);
 
 }  // namespace sherd

@@ -1,9 +1,11 @@
 #include <openvdb/tools/Interpolation.h>
 
+#include <mutex>
 #include <sstream>
 
 #include "base/parallel.h"
 #include "types/scalar_grid_vdb.h"
+#include "types/value_bytes.h"
 
 namespace sherd {
 namespace {
@@ -25,18 +27,9 @@ void hashVoxels(Hasher& hasher, const FloatTree& tree) {
   for (; tile; ++tile) {
     const openvdb::CoordBBox box = tile.getBoundingBox();
     hasher.add(box.min().x()).add(box.min().y()).add(box.min().z()).add(box.max().x());
-    hasher.add(static_cast<double>(*tile));
+    const float value = *tile;
+    hasher.bytes(&value, sizeof value);
   }
-}
-
-Digest contentOf(const FloatGrid& grid, const FileFrame& frame) {
-  std::ostringstream transform;
-  grid.transform().write(transform);
-  Hasher hasher;
-  hasher.add(transform.str()).add(static_cast<double>(grid.background()));
-  hasher.add(frame.metresPerUnit).add(static_cast<int>(frame.up));
-  hashVoxels(hasher, grid.tree());
-  return hasher.digest();
 }
 
 /// True when no active voxel differs from the background.
@@ -48,10 +41,32 @@ bool onlyBackground(const FloatGrid& grid) {
 
 }  // namespace
 
+Digest contentOf(const ScalarGrid::Impl& impl) {
+  Hasher hasher;
+  hasher.add(impl.name);
+  hashBits(hasher, impl.frame);
+  hashBits(hasher, impl.constant);
+  hasher.add(impl.grid != nullptr);
+  if (impl.grid == nullptr) return hasher.digest();
+  std::ostringstream frame;
+  impl.grid->transform().write(frame);
+  impl.grid->writeMeta(frame);
+  const float background = impl.grid->background();
+  hasher.add(frame.str()).bytes(&background, sizeof background);
+  hashVoxels(hasher, impl.grid->tree());
+  return hasher.digest();
+}
+
+void initializeOpenVdb() {
+  // initialize() is guarded by itself, but not against exceptions of two threads at once.
+  static std::once_flag once;
+  std::call_once(once, [] { openvdb::initialize(); });
+}
+
 ScalarGrid ScalarGrid::constant(double value) {
   auto impl = std::make_shared<Impl>();
   impl->constant = value;
-  impl->content = Hasher().add("constant").add(value).digest();
+  impl->content = contentOf(*impl);
   return ScalarGrid(std::move(impl));
 }
 
@@ -61,13 +76,13 @@ ScalarGrid scalarGridOf(FloatGrid::Ptr grid, std::string name, const FileFrame& 
   impl->frame = frame;
   if (onlyBackground(*grid)) {
     impl->constant = static_cast<double>(grid->background());
-    impl->content = Hasher().add("constant").add(impl->constant).digest();
+    impl->content = contentOf(*impl);
     return ScalarGrid(std::move(impl));
   }
   const float background = grid->background();
   for (auto value = grid->beginValueOff(); value; ++value) value.setValue(background);
-  impl->content = contentOf(*grid, frame);
   impl->grid = std::move(grid);
+  impl->content = contentOf(*impl);
   return ScalarGrid(std::move(impl));
 }
 

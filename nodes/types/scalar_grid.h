@@ -4,9 +4,12 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 
+#include "base/archive.h"
 #include "base/hash.h"
 #include "types/vec.h"
 
@@ -16,6 +19,7 @@ namespace sherd {
 class ScalarGrid {
  public:
   static constexpr const char* typeName = "ScalarGrid";
+  static constexpr int archiveVersion = 1;
   struct Impl;  ///< defined where OpenVDB is included: types/scalar_grid_vdb.h
 
   /// The same value everywhere; costs nothing to sample.
@@ -35,5 +39,9 @@ class ScalarGrid {
 
 void hashValue(Hasher& hasher, const ScalarGrid& grid);
 std::size_t byteSize(const ScalarGrid& grid);
+/// The grid itself with its transform and metadata, bit for bit. Loading also refuses bytes that another
+/// version of OpenVDB wrote.
+void saveValue(ArchiveWriter& to, const ScalarGrid& grid);
+std::optional<ScalarGrid> loadValue(ArchiveReader& from, std::type_identity<ScalarGrid>);
 
 }  // namespace sherd

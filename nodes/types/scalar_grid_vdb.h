@@ -15,8 +15,14 @@ struct ScalarGrid::Impl {
   openvdb::FloatGrid::ConstPtr grid;  ///< null for a constant; inactive voxels hold the background
   FileFrame frame;                    ///< of the grid's world space
   double constant = 0;
-  Digest content;  ///< of the values, the transform and the frame
+  Digest content;  ///< of everything above
 };
+
+/// Of everything but impl.content itself. Cost O(stored voxels).
+Digest contentOf(const ScalarGrid::Impl& impl);
+
+/// Registers OpenVDB's types once. To be called before a grid is read or written.
+void initializeOpenVdb();
 
 /// Wraps an OpenVDB grid whose world space lies in `frame`. Inactive voxels are set to the background first,
 /// since that is what ScalarGrid promises of them. A grid without active voxels, or whose active voxels all

@@ -2,17 +2,73 @@
 
 #include <algorithm>
 
+#include "base/value_type.h"
+#include "types/value_bytes.h"
+
 namespace sherd {
 
+static_assert(ArchivedValue<TetMesh>);
+
 void hashValue(Hasher& hasher, const TetMesh& mesh) {
-  if (mesh.surface) hashValue(hasher, *mesh.surface);
-  hasher.add(mesh.nodes).add(mesh.tets).add(mesh.heldBegin).add(mesh.held).add(mesh.insideFraction);
+  hashPart(hasher, mesh.surface);
+  hasher.add(mesh.nodes).add(mesh.tets).add(mesh.neighbours).add(mesh.boundary);
+  hasher.add(mesh.heldBegin).add(mesh.held).add(mesh.insideFraction);
+  hashBits(hasher, mesh.quality);
 }
 
 std::size_t byteSize(const TetMesh& mesh) {
   return (mesh.surface ? byteSize(*mesh.surface) : 0) + mesh.nodes.size() * sizeof(Vec3) +
          mesh.tets.size() * (2 * sizeof(Tetra) + sizeof(double)) + mesh.boundary.size() * sizeof(Triangle) +
          (mesh.held.size() + mesh.heldBegin.size()) * sizeof(Index);
+}
+
+void saveValue(ArchiveWriter& to, const TetMesh& mesh) {
+  to.part(mesh.surface);
+  to.array(mesh.nodes);
+  to.array(mesh.tets);
+  to.array(mesh.neighbours);
+  to.array(mesh.boundary);
+  to.array(mesh.heldBegin);
+  to.array(mesh.held);
+  to.array(mesh.insideFraction);
+  putBits(to, mesh.quality);
+}
+
+namespace {
+
+/// The lists of held triangles follow one another without gap and name triangles of the surface.
+bool heldIsSound(const TetMesh& mesh) {
+  const std::vector<Index>& begin = mesh.heldBegin;
+  if (begin.empty()) return mesh.held.empty();
+  return begin.size() == mesh.tets.size() + 1 && begin.front() == 0 &&
+         std::is_sorted(begin.begin(), begin.end()) && at(begin.back()) == mesh.held.size() &&
+         allInRange(mesh.held, 0, mesh.surface ? mesh.surface->triangles.size() : 0);
+}
+
+bool isSound(const TetMesh& mesh) {
+  const std::size_t tets = mesh.tets.size();
+  return allInRange(mesh.tets, 0, mesh.nodes.size()) && allInRange(mesh.boundary, 0, mesh.nodes.size()) &&
+         (mesh.neighbours.empty() || mesh.neighbours.size() == tets) &&
+         allInRange(mesh.neighbours, -1, tets) &&
+         (mesh.insideFraction.empty() || mesh.insideFraction.size() == tets) && heldIsSound(mesh);
+}
+
+}  // namespace
+
+std::optional<TetMesh> loadValue(ArchiveReader& from, std::type_identity<TetMesh>) {
+  std::optional<TetMesh> loaded(std::in_place);
+  TetMesh& mesh = *loaded;
+  mesh.surface = from.part<TriMesh>();
+  from.array(mesh.nodes);
+  from.array(mesh.tets);
+  from.array(mesh.neighbours);
+  from.array(mesh.boundary);
+  from.array(mesh.heldBegin);
+  from.array(mesh.held);
+  from.array(mesh.insideFraction);
+  getBits(from, mesh.quality);
+  if (!from.ok() || !isSound(mesh)) loaded.reset();
+  return loaded;
 }
 
 double tetVolume(const TetMesh& mesh, std::size_t t) {

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <type_traits>
 #include <vector>
 
+#include "base/archive.h"
 #include "base/hash.h"
 #include "types/tri_mesh.h"
 #include "types/vec.h"
@@ -19,6 +22,7 @@ struct TetQuality {
 
 struct TetMesh {
   static constexpr const char* typeName = "TetMesh";
+  static constexpr int archiveVersion = 1;
 
   std::shared_ptr<const TriMesh> surface;  ///< lies strictly inside the union of the tetrahedra
   std::vector<Vec3> nodes;                 ///< m; every node belongs to a tetrahedron
@@ -35,6 +39,8 @@ struct TetMesh {
 
 void hashValue(Hasher& hasher, const TetMesh& mesh);
 std::size_t byteSize(const TetMesh& mesh);
+void saveValue(ArchiveWriter& to, const TetMesh& mesh);
+std::optional<TetMesh> loadValue(ArchiveReader& from, std::type_identity<TetMesh>);
 
 /// Volume of tetrahedron t, m³.
 double tetVolume(const TetMesh& mesh, std::size_t t);

@@ -1,9 +1,12 @@
 // A triangle surface with the artist's attributes, kept per corner so that seams need no doubled vertices.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "base/archive.h"
 #include "base/hash.h"
 #include "types/vec.h"
 
@@ -28,6 +31,7 @@ struct FileFrame {
 /// Corner c of triangle t is entry 3 t + c of every per-corner array.
 struct TriMesh {
   static constexpr const char* typeName = "Mesh";
+  static constexpr int archiveVersion = 1;
 
   struct UvSet {
     std::string name;
@@ -53,5 +57,9 @@ struct TriMesh {
 
 void hashValue(Hasher& hasher, const TriMesh& mesh);
 std::size_t byteSize(const TriMesh& mesh);
+/// Loading refuses indices out of range and arrays whose lengths don't belong together, here and in all
+/// types.
+void saveValue(ArchiveWriter& to, const TriMesh& mesh);
+std::optional<TriMesh> loadValue(ArchiveReader& from, std::type_identity<TriMesh>);
 
 }  // namespace sherd

@@ -76,9 +76,15 @@ class ArchiveReader {
 
   template <class T>
   requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) T get() {
-    T number{};
-    raw(&number, sizeof number);
-    return number;
+    if constexpr (std::is_same_v<T, bool>) {
+      const auto byte = get<std::uint8_t>();
+      if (byte > 1) fail();
+      return byte == 1;
+    } else {
+      T number{};
+      raw(&number, sizeof number);
+      return number;
+    }
   }
   template <class T>
   requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void get(T& number) { number = get<T>(); }
@@ -109,6 +115,7 @@ class ArchiveReader {
   std::shared_ptr<const T> part();
 
   bool ok() const { return ok_; }
+  std::size_t remaining() const { return bytes_.size() - at_; }  ///< bytes
   bool atEnd() const { return at_ == bytes_.size(); }
   /// For a loader that finds something wrong itself.
   void fail() {

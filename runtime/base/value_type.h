@@ -2,6 +2,7 @@
 // without knowing what they are.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 #include <type_traits>
 
 #include "base/archive.h"
+#include "base/digest_memo.h"
 #include "base/hash.h"
 
 namespace sherd {
@@ -139,12 +141,19 @@ const ValueType& valueType() {
   return type;
 }
 
+/// Feeds a value that another one holds, or that there is none, by its digest.
+template <class T>
+void hashPart(Hasher& hasher, const std::shared_ptr<const T>& value) {
+  hasher.add(value != nullptr);
+  if (value != nullptr) hasher.add(sharedDigest(valueType<T>(), value));
+}
+
 template <class T>
 void ArchiveWriter::part(const std::shared_ptr<const T>& value) {
   put(value != nullptr);
   if (value == nullptr) return;
   const ValueType& type = valueType<T>();
-  parts_.push_back({&type, value, type.digest(value.get())});
+  parts_.push_back({&type, value, sharedDigest(type, value)});
   put(parts_.back().digest);
 }
 
@@ -154,7 +163,10 @@ std::shared_ptr<const T> ArchiveReader::part() {
   const Digest wanted = digest();
   if (!ok_) return nullptr;
   auto value = parts_ ? parts_(valueType<T>(), wanted) : nullptr;
-  if (value == nullptr) fail();
+  if (value == nullptr)
+    fail();
+  else
+    rememberDigest(valueType<T>(), value, wanted);
   return std::static_pointer_cast<const T>(value);
 }
 

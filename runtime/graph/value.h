@@ -20,7 +20,7 @@ class Value {
 
   bool empty() const { return data_ == nullptr; }
   const ValueType& type() const { return *type_; }
-  Digest digest() const { return type_->digest(data_.get()); }
+  Digest digest() const { return sharedDigest(*type_, data_); }
   std::size_t bytes() const { return type_->bytes(data_.get()); }
   /// Equal for values that share their data.
   const void* address() const { return data_.get(); }

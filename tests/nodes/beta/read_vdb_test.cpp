@@ -147,8 +147,11 @@ TEST_F(ReadVdb, NothingPaintedIsConstant) {
   ASSERT_TRUE(result.ok());
   EXPECT_TRUE(result->isConstant());
   EXPECT_EQ(sampleAt(*result, Vec3(0.1, 0.2, 0.3)), 2.5);
-  EXPECT_EQ(contentOf(*result), contentOf(ScalarGrid::constant(2.5)));
-  EXPECT_NE(contentOf(*result), contentOf(ScalarGrid::constant(2)));
+  EXPECT_EQ(result->name(), "beta");
+  const auto other = makeGrid("beta", 2.5);
+  EXPECT_EQ(contentOf(*result), contentOf(scalarGridOf(other, "beta", FileFrame{})));
+  EXPECT_NE(contentOf(*result), contentOf(scalarGridOf(other, "toughness", FileFrame{})));
+  EXPECT_NE(contentOf(*result), contentOf(scalarGridOf(makeGrid("beta", 2), "beta", FileFrame{})));
 }
 
 TEST_F(ReadVdb, TakesTheFirstFloatGridAndSaysSo) {
