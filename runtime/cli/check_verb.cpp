@@ -15,7 +15,8 @@ int checkVerb(const CheckOptions& options, const Registry& registry, const Envir
     checkFiles(graph, all, diagnostics);
     printDiagnostics(diagnostics, console.err);
     if (diagnostics.empty())
-      console.out << path << ": " << countText(graph.nodes.size(), "node") << ", no errors\n";
+      console.out << path << ": " << (file.subgraph != nullptr ? "a subgraph of " : "")
+                  << countText(graph.nodes.size(), "node") << ", no errors\n";
     else
       code = kWrongInput;
   }

@@ -1,5 +1,7 @@
 #include "cli/open_graph.h"
 
+#include "graph/subgraphs.h"
+
 namespace sherd {
 namespace {
 
@@ -25,6 +27,7 @@ Graph openGraph(const std::string& path, const std::vector<std::string>& vars,
                             parseAll("--set", sets, environment, diagnostics)};
   const std::size_t before = diagnostics.count();
   file = readGraphFile(path, diagnostics);
+  expandSubgraphs(file, diagnostics);
   // Of a file that can't be read as a graph, nothing more can be said.
   if (file.nodes.empty() && diagnostics.count() > before) return {};
   return checkGraph(file, registry, overrides, environment, diagnostics);

@@ -6,6 +6,7 @@
 #include "cli/open_graph.h"
 #include "cli/progress.h"
 #include "cli/verbs.h"
+#include "graph/subgraphs.h"
 
 namespace sherd {
 namespace {
@@ -93,6 +94,7 @@ int runVerb(const RunOptions& options, const Registry& registry, const Environme
   const Graph graph =
       openGraph(options.graph, options.vars, options.sets, registry, environment, diagnostics, file);
   tellUnsupported(file, diagnostics, console);
+  refuseSubgraphFile(file, diagnostics);
   if (!diagnostics.empty()) return refuse(diagnostics, options, console);
   const auto wanted = wantedNodes(graph, options.target, options.to);
   if (!wanted.ok()) diagnostics.add({file.source, 0, 0}, "", wanted.error());

@@ -6,6 +6,7 @@
 #include "graph/graph.h"
 #include "graph/loops.h"
 #include "graph/param.h"
+#include "graph/subgraphs.h"
 #include "graph/suggest.h"
 
 namespace sherd {
@@ -47,6 +48,7 @@ class Checker {
       graph_.index.emplace(entry.name, static_cast<int>(nodeNames_.size()));
       nodeNames_.push_back(entry.name);
     }
+    for (const GroupEntry& group : file.groups) nodeNames_.push_back(group.name);
     for (const Assignment& assignment : overrides.sets) takeOverride(assignment);
   }
 
@@ -109,8 +111,11 @@ class Checker {
     if (type == nullptr) {
       std::vector<std::string> names;
       for (const NodeType* known : registry_.all()) names.push_back(known->name);
+      for (const SubgraphEntry& known : file_.subgraphs) names.push_back(known.name);
       diagnostics_.add(entry.typeOrigin, entry.name, "there is no node type " + inQuotes(entry.type),
-                       suggestion(entry.type, names, "node types", "sherd nodes"));
+                       std::find(names.begin(), names.end(), entry.type) != names.end()
+                           ? "it is a subgraph: write " + inQuotes(entry.type) + ", without a version"
+                           : suggestion(entry.type, names, "node types", "sherd nodes"));
       return;
     }
     // Also of another version: what has to change in the node is told in the same go.
@@ -273,12 +278,12 @@ class Checker {
       else if (!given.insert(setting.name).second)
         diagnostics_.add(setting.origin, where, "the parameter is both set and wired", "keep one of the two");
       else
-        readParam(node, node.type->params[found->second], setting.value);
+        readParam(node, node.type->params[found->second], setting.value, entry.scope);
     }
     if (const auto found = overrides_.find(static_cast<int>(i)); found != overrides_.end())
       for (const Override& o : found->second) {
         given.insert(o.param);
-        readParam(node, *node.type->param(o.param), parseTyped(o.assignment.text, o.assignment.source));
+        readParam(node, *node.type->param(o.param), parseTyped(o.assignment.text, o.assignment.source), {});
       }
     for (const ParamInfo& info : node.type->params) {
       if (!node.params.contains(info.name))
@@ -289,10 +294,10 @@ class Checker {
     }
   }
 
-  void readParam(Graph::Node& node, const ParamInfo& info, const JsonValue& value) {
+  void readParam(Graph::Node& node, const ParamInfo& info, const JsonValue& value, const std::string& scope) {
     const std::string where = node.name + '.' + info.name;
     node.origins[info.name] = value.origin;
-    const auto expanded = variables_.expand(value, where);
+    const auto expanded = variables_.expand(value, where, scope);
     if (!expanded) return;
     auto read = sherd::readParam(info, expanded->value, expanded->base);
     if (read.ok())
@@ -331,7 +336,11 @@ class Checker {
 
 Graph checkGraph(const GraphFile& file, const Registry& registry, const Overrides& overrides,
                  const Environment& environment, Diagnostics& diagnostics) {
-  return Checker(file, registry, overrides, environment, diagnostics).check();
+  const Overrides expanded = withSubgraphOverrides(file, overrides, diagnostics);
+  Graph graph = Checker(file, registry, expanded, environment, diagnostics).check();
+  graph.groups = groupsOf(file, graph);
+  checkSubgraphs(file, graph, registry, environment, diagnostics);
+  return graph;
 }
 
 }  // namespace sherd

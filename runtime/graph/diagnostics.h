@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,9 @@ struct Diagnostic {
   std::string text() const;
 };
 
-/// Collects errors. Only the first kMostKept are kept; the rest is counted.
+/// Collects errors. Only the first kMostKept are kept; the rest is counted. The same text about the same
+/// place of a file counts once, also where it was found through several uses of a subgraph ("a/cut" and
+/// "b/cut").
 class Diagnostics {
  public:
   static constexpr std::size_t kMostKept = 1000;
@@ -46,11 +49,12 @@ class Diagnostics {
   void add(Origin origin, std::string where, Error error);
   bool empty() const { return count_ == 0; }
   std::size_t count() const { return count_; }
-  /// In the order of the source; those of the command line come first.
+  /// In the order of the sources, as they were first spoken of; those of the command line come first.
   std::vector<Diagnostic> sorted() const;
 
  private:
   std::vector<Diagnostic> kept_;
+  std::set<std::string> seen_;
   std::size_t count_ = 0;
 };
 

@@ -52,10 +52,15 @@ std::vector<int> defaultNodes(const Graph& graph) {
 Result<std::vector<int>> wantedNodes(const Graph& graph, const std::string& target, const std::string& to) {
   std::vector<int> wanted;
   if (!to.empty()) {
-    wanted.push_back(graph.find(to));
     std::vector<std::string> names;
     for (const Graph::Node& node : graph.nodes) names.push_back(node.name);
-    if (wanted[0] < 0) return unknown("the graph has no node", to, names, "nodes");
+    for (const auto& [name, nodes] : graph.groups) names.push_back(name);
+    if (const auto group = graph.groups.find(to); group != graph.groups.end())
+      wanted = group->second;
+    else if (const int node = graph.find(to); node >= 0)
+      wanted = {node};
+    else
+      return unknown("the graph has no node", to, names, "nodes");
   } else if (!target.empty()) {
     std::vector<std::string> names;
     for (const Graph::Target& known : graph.targets) {

@@ -38,6 +38,7 @@ struct Graph {
   SourcePtr source;
   std::vector<Node> nodes;  ///< in the file's order
   std::vector<Target> targets;
+  std::map<std::string, std::vector<int>> groups;  ///< a node that stood for a subgraph: whose outputs it had
   double fps = 24;
 
   /// The node's index, or −1.

@@ -70,7 +70,7 @@ const Expanded* Variables::resolve(Variable& variable) {
   }
   variable.state = State::Resolving;
   stack_.push_back(&variable);
-  auto expanded = expand(variable.setting.value, where);
+  auto expanded = expand(variable.setting.value, where, variable.setting.scope);
   stack_.pop_back();
   if (variable.state == State::Broken || !expanded) {
     variable.state = State::Broken;
@@ -81,11 +81,12 @@ const Expanded* Variables::resolve(Variable& variable) {
   return &variable.expanded;
 }
 
-std::optional<Expanded> Variables::expand(const JsonValue& value, const std::string& where) {
-  if (value.kind == JsonValue::Kind::String) return expandText(value, where);
+std::optional<Expanded> Variables::expand(const JsonValue& value, const std::string& where,
+                                          const std::string& scope) {
+  if (value.kind == JsonValue::Kind::String) return expandText(value, where, scope);
   Expanded result{value, value.origin.source->directory};
   for (JsonValue& item : result.value.items) {
-    auto expanded = expand(item, where);
+    auto expanded = expand(item, where, scope);
     if (!expanded) return std::nullopt;
     item = std::move(expanded->value);
   }
@@ -108,7 +109,8 @@ const Expanded* Variables::fromOutside(const std::string& name) {
   return nullptr;
 }
 
-const Expanded* Variables::lookUp(const std::string& name, const Origin& origin, const std::string& where) {
+const Expanded* Variables::lookUp(const std::string& name, const Origin& origin, const std::string& where,
+                                  const std::string& scope) {
   const std::string base = name.substr(0, name.find(':'));
   const std::string reference = inQuotes("${" + name + "}");
   if (base == "frame") {
@@ -120,22 +122,34 @@ const Expanded* Variables::lookUp(const std::string& name, const Origin& origin,
     diagnostics_.add(origin, where, reference + " has a format", "only ${frame} takes one");
     return nullptr;
   }
-  if (const auto found = variables_.find(name); found != variables_.end()) return resolve(found->second);
+  if (const auto found = variables_.find(scope + name); found != variables_.end())
+    return resolve(found->second);
   if (const Expanded* value = fromOutside(name)) return value;
   if (name == "ASSETS") {
     diagnostics_.add(origin, where, "the folder of assets was not found",
                      "set the environment variable SHERD_ASSETS");
     return nullptr;
   }
-  constexpr std::size_t kMostSuggestions = 100;  // each compares with all names
-  std::string remedy = "define it in \"vars\"";
-  if (diagnostics_.count() < kMostSuggestions) {
-    std::vector<std::string> names{"ASSETS"};
-    for (const auto& [known, variable] : variables_) names.push_back(known);
-    remedy = suggestion(name, names, "variables");
-  }
-  diagnostics_.add(origin, where, "there is no variable " + inQuotes(name), remedy);
+  diagnostics_.add(
+      origin, where,
+      (scope.empty() ? "there is no variable " : "the subgraph has no variable ") + inQuotes(name),
+      remedyFor(name, scope));
   return nullptr;
+}
+
+/// What to do about a variable that is not there.
+std::string Variables::remedyFor(const std::string& name, const std::string& scope) const {
+  constexpr std::size_t kMostSuggestions = 100;  // each compares with all names
+  if (!scope.empty() && variables_.contains(name))
+    return "that of the graph is not seen inside: add " + inQuotes(name) +
+           " to the subgraph's \"vars\" and pass it with \"params\": { " + inQuotes(name) + ": " +
+           inQuotes("${" + name + "}") + " }";
+  if (diagnostics_.count() >= kMostSuggestions) return "define it in \"vars\"";
+  std::vector<std::string> names{"ASSETS"};
+  for (const auto& [known, variable] : variables_)
+    if (known.starts_with(scope) && known.find('/', scope.size()) == std::string::npos)
+      names.push_back(known.substr(scope.size()));
+  return suggestion(name, names, "variables");
 }
 
 /// Puts a variable's value into the middle of a text.
@@ -155,7 +169,8 @@ bool Variables::append(Expanded& result, const std::string& name, const JsonValu
   return false;
 }
 
-std::optional<Expanded> Variables::expandText(const JsonValue& value, const std::string& where) {
+std::optional<Expanded> Variables::expandText(const JsonValue& value, const std::string& where,
+                                              const std::string& scope) {
   const std::string& text = value.text;
   Expanded result{value, value.origin.source->directory};
   if (text.find("${") == std::string::npos) return result;
@@ -177,7 +192,7 @@ std::optional<Expanded> Variables::expandText(const JsonValue& value, const std:
       return std::nullopt;
     }
     const std::string name = text.substr(at + 2, end - at - 2);
-    const Expanded* found = lookUp(name, value.origin, where);
+    const Expanded* found = lookUp(name, value.origin, where, scope);
     if (found == nullptr) return std::nullopt;
     if (at == 0) result.base = found->base;
     if (at == 0 && end + 1 == text.size()) {

@@ -49,8 +49,10 @@ class Variables {
             Diagnostics& diagnostics);
 
   /// Replaces variables in strings, also those in lists. A string that is exactly "${x}" becomes x's value,
-  /// with its kind. Nothing where something is wrong, which then has been reported for `where`.
-  std::optional<Expanded> expand(const JsonValue& value, const std::string& where);
+  /// with its kind. Nothing where something is wrong, which then has been reported for `where`. `scope`:
+  /// whose variables these are, as in Setting.
+  std::optional<Expanded> expand(const JsonValue& value, const std::string& where,
+                                 const std::string& scope = {});
 
  private:
   enum class State { Untouched, Resolving, Resolved, Broken };
@@ -63,9 +65,12 @@ class Variables {
   static constexpr std::size_t kDeepest = 64;
 
   const Expanded* resolve(Variable& variable);
-  const Expanded* lookUp(const std::string& name, const Origin& origin, const std::string& where);
+  const Expanded* lookUp(const std::string& name, const Origin& origin, const std::string& where,
+                         const std::string& scope);
+  std::string remedyFor(const std::string& name, const std::string& scope) const;
   const Expanded* fromOutside(const std::string& name);
-  std::optional<Expanded> expandText(const JsonValue& value, const std::string& where);
+  std::optional<Expanded> expandText(const JsonValue& value, const std::string& where,
+                                     const std::string& scope);
   bool append(Expanded& result, const std::string& name, const JsonValue& value, const std::string& where);
 
   const Environment& environment_;

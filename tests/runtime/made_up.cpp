@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/parallel.h"
+#include "graph/subgraphs.h"
 
 namespace sherd::test {
 
@@ -221,8 +222,9 @@ Checked check(const std::string& text, const Registry& registry, const std::vect
     overrides.sets.push_back(parseAssignment("--set", set, outside).value());
   for (const std::string& var : vars)
     overrides.vars.push_back(parseAssignment("--var", var, outside).value());
-  const GraphFile file =
+  GraphFile file =
       readGraph(text, std::make_shared<const Source>(Source{"test.json", directory}), diagnostics);
+  expandSubgraphs(file, diagnostics);
   Checked checked;
   checked.graph = checkGraph(file, registry, overrides, outside, diagnostics);
   for (const Diagnostic& diagnostic : diagnostics.sorted()) checked.errors.push_back(diagnostic.text());

@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <set>
+
+#include "graph/subgraphs.h"
+#include "graph/suggest.h"
+
+namespace sherd {
+namespace {
+
+/// All that travels on wires of the known node types, and what may be wired to parameters.
+std::set<std::string> knownTypes(const Registry& registry) {
+  std::set<std::string> types{"Boolean", "Integer", "Number", "String"};
+  for (const NodeType* type : registry.all())
+    for (const auto* ports : {&type->inputs, &type->outputs})
+      for (const PortInfo& port : *ports) types.insert(port.type);
+  return types;
+}
+
+/// The output that is wired, or null where checkGraph has said what is wrong with it.
+const PortInfo* outputOf(const Graph& graph, const ExpectedType& expected) {
+  const int i = graph.find(expected.node);
+  if (i < 0) return nullptr;
+  const NodeType* type = graph.nodes[static_cast<std::size_t>(i)].type;
+  if (type == nullptr || type->outputs.empty()) return nullptr;
+  return expected.output.empty() ? &type->outputs.front() : type->output(expected.output);
+}
+
+/// An integer may go where a number is declared: parameters take it.
+bool fits(const std::string& type, const std::string& declared) {
+  return type == declared || (type == "Integer" && declared == "Number");
+}
+
+void checkExpectedTypes(const GraphFile& file, const Graph& graph, const Registry& registry,
+                        Diagnostics& diagnostics) {
+  if (file.expectedTypes.empty()) return;
+  const std::set<std::string> types = knownTypes(registry);
+  for (const ExpectedType& expected : file.expectedTypes) {
+    if (!types.contains(expected.type)) {
+      diagnostics.add(expected.typeOrigin, expected.where, "there is no type " + inQuotes(expected.type),
+                      suggestion(expected.type, {types.begin(), types.end()}, "types", "sherd nodes TYPE"));
+      continue;
+    }
+    const PortInfo* output = outputOf(graph, expected);
+    if (output != nullptr && !fits(output->type, expected.type))
+      diagnostics.add(expected.origin, expected.where,
+                      inQuotes(expected.node + '.' + output->name) + " is of type " + output->type,
+                      "the subgraph declares type " + expected.type);
+  }
+}
+
+const GroupEntry* findGroup(const GraphFile& file, const std::string& name) {
+  for (const GroupEntry& group : file.groups)
+    if (group.name == name) return &group;
+  return nullptr;
+}
+
+/// The variables of a node that stood for a subgraph, without its name.
+std::vector<std::string> variablesOf(const GraphFile& file, const GroupEntry& group) {
+  std::vector<std::string> names;
+  const std::string prefix = group.name + '/';
+  for (const Setting& variable : file.vars)
+    if (variable.name.starts_with(prefix) && variable.name.find('/', prefix.size()) == std::string::npos)
+      names.push_back(variable.name.substr(prefix.size()));
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> nodesOfGroup(const GraphFile& file, const GroupEntry& group) {
+  std::vector<std::string> nodes;
+  for (const auto& [name, link] : group.outputs) {
+    std::string node = link.substr(0, link.find('.'));
+    if (std::find(nodes.begin(), nodes.end(), node) == nodes.end()) nodes.push_back(std::move(node));
+  }
+  if (!nodes.empty()) return nodes;
+  for (const NodeEntry& node : file.nodes)
+    if (node.name.starts_with(group.name + '/')) nodes.push_back(node.name);
+  return nodes;
+}
+
+std::map<std::string, std::vector<int>> groupsOf(const GraphFile& file, const Graph& graph) {
+  std::map<std::string, std::vector<int>> groups;
+  for (const GroupEntry& group : file.groups)
+    for (const std::string& node : nodesOfGroup(file, group))
+      if (const int i = graph.find(node); i >= 0) groups[group.name].push_back(i);
+  return groups;
+}
+
+void checkSubgraphs(const GraphFile& file, const Graph& graph, const Registry& registry,
+                    const Environment& environment, Diagnostics& diagnostics) {
+  checkExpectedTypes(file, graph, registry, diagnostics);
+  for (const GraphFile& unused : file.unused) checkGraph(unused, registry, {}, environment, diagnostics);
+}
+
+Overrides withSubgraphOverrides(const GraphFile& file, const Overrides& overrides, Diagnostics& diagnostics) {
+  Overrides result{overrides.vars, {}};
+  for (const Assignment& assignment : overrides.sets) {
+    const std::size_t dot = assignment.name.find('.');
+    const GroupEntry* group = findGroup(file, assignment.name.substr(0, dot));
+    if (group == nullptr || dot == std::string::npos || dot + 1 == assignment.name.size()) {
+      result.sets.push_back(assignment);
+      continue;
+    }
+    const std::string name = assignment.name.substr(dot + 1);
+    const std::vector<std::string> known = variablesOf(file, *group);
+    if (std::find(known.begin(), known.end(), name) != known.end())
+      result.vars.push_back({group->name + '/' + name, assignment.text, assignment.source});
+    else
+      diagnostics.add({assignment.source, 0, 0}, assignment.name,
+                      group->subgraph + " has no parameter " + inQuotes(name),
+                      suggestion(name, known, "parameters"));
+  }
+  return result;
+}
+
+void refuseSubgraphFile(const GraphFile& file, Diagnostics& diagnostics) {
+  if (file.subgraph == nullptr) return;
+  const std::string name = file.source->name;
+  diagnostics.add({file.source, 0, 0}, "", "this is a subgraph, which can't be run by itself",
+                  "name it in a graph, as in \"subgraphs\": { \"Name\": \"" + name +
+                      "\" }, and use it with \"type\": \"Name\"");
+}
+
+}  // namespace sherd

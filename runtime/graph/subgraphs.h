@@ -1,0 +1,33 @@
+// Subgraphs: named pieces of a graph that nodes stand for.
+#pragma once
+
+#include "graph/graph.h"
+
+namespace sherd {
+
+/// Replaces each node that stands for a subgraph by the subgraph's nodes, which are named with the node's
+/// name before theirs ("break/cut"), and rewires what was linked to it. The subgraph's variables become
+/// variables of the file ("break/gamma") with the node's "params" for values. Reports what is wrong in the
+/// subgraphs' use and inside them, in each place once. Also fills what GraphFile lists as added by this.
+/// O(nodes + links after it).
+void expandSubgraphs(GraphFile& file, Diagnostics& diagnostics);
+
+/// The nodes of an expanded file that the outputs of a node that stood for a subgraph come from; where it has
+/// no outputs, all that are in it.
+std::vector<std::string> nodesOfGroup(const GraphFile& file, const GroupEntry& group);
+/// The same for all of them, by name and as indices.
+std::map<std::string, std::vector<int>> groupsOf(const GraphFile& file, const Graph& graph);
+
+/// Of an expanded file whose other checks have been made (checkGraph): that what is wired to a subgraph's
+/// ports has the declared type, and that the subgraphs that no node uses are without errors.
+void checkSubgraphs(const GraphFile& file, const Graph& graph, const Registry& registry,
+                    const Environment& environment, Diagnostics& diagnostics);
+
+/// The overrides of an expanded file, with "--set break.gamma=…" of a node that stood for a subgraph made an
+/// override of the variable "break/gamma".
+Overrides withSubgraphOverrides(const GraphFile& file, const Overrides& overrides, Diagnostics& diagnostics);
+
+/// A message for a file that holds a subgraph: it can't be run by itself. Empty for others.
+void refuseSubgraphFile(const GraphFile& file, Diagnostics& diagnostics);
+
+}  // namespace sherd
