@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
@@ -85,11 +86,41 @@ int writeAll(const std::string& path, std::string_view content) {
 
 }  // namespace
 
+namespace {
+
+/// Paths of files that are being written; null where a place is free.
+constexpr std::size_t kMostPartial = 1024;
+std::array<std::atomic<const char*>, kMostPartial> gPartial{};
+
+}  // namespace
+
+PartialFile::PartialFile(std::string path) : path_(std::move(path)) {
+  for (std::size_t i = 0; i < kMostPartial; ++i) {
+    const char* free = nullptr;
+    if (!gPartial[i].compare_exchange_strong(free, path_.c_str())) continue;
+    slot_ = static_cast<int>(i);
+    return;
+  }
+}
+
+PartialFile::~PartialFile() {
+  if (slot_ >= 0) gPartial[static_cast<std::size_t>(slot_)] = nullptr;
+}
+
+void removePartialFiles() noexcept {
+  for (const auto& partial : gPartial)
+    if (const char* path = partial.load()) ::unlink(path);
+}
+
 std::string partialName(const std::string& path) { return path + ".partial"; }
 
 Result<FileChange> writeFileAtomically(const std::string& path, std::string_view content) {
-  if (fileHolds(path, content)) return FileChange::Kept;
   const std::string partial = partialName(path);
+  if (fileHolds(path, content)) {
+    ::unlink(partial.c_str());  // of a run that was killed
+    return FileChange::Kept;
+  }
+  const PartialFile known(partial);
   int error = writeAll(partial, content);
   if (error == 0 && ::rename(partial.c_str(), path.c_str()) != 0) error = errno;
   if (error != 0) {

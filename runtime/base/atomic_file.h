@@ -16,6 +16,23 @@ enum class FileChange {
 /// Is `path` a regular file (no link) of exactly these bytes?
 bool fileHolds(const std::string& path, std::string_view content);
 
+/// A file that is being written: known to removePartialFiles() from construction to destruction.
+class PartialFile {
+ public:
+  explicit PartialFile(std::string path);
+  ~PartialFile();
+  PartialFile(const PartialFile&) = delete;
+  PartialFile& operator=(const PartialFile&) = delete;
+
+ private:
+  std::string path_;
+  int slot_ = -1;  ///< −1: too many at once, this one is not known
+};
+
+/// Removes all files that are being written at this moment. For a signal handler that ends the process: takes
+/// no lock, allocates nothing.
+void removePartialFiles() noexcept;
+
 /// What a file is called while it is being written. A run that is killed leaves at most this behind; the next
 /// write of the same file replaces it.
 std::string partialName(const std::string& path);

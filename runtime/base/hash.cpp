@@ -3,6 +3,7 @@
 #include <xxhash.h>
 
 #include <array>
+#include <cstring>
 #include <new>
 
 namespace sherd {
@@ -36,6 +37,19 @@ Hasher& Hasher::bytes(const void* data, std::size_t size) {
 Digest Hasher::digest() const {
   const XXH128_hash_t h = XXH3_128bits_digest(state_->xxh);
   return {h.high64, h.low64};
+}
+
+Digest digestOf(const Digest& first, std::span<const std::byte> rest) {
+  constexpr std::size_t kOnStack = 512;
+  if (sizeof first + rest.size() <= kOnStack) {
+    std::array<std::byte, kOnStack> block;
+    std::memcpy(block.data(), &first, sizeof first);
+    if (!rest.empty()) std::memcpy(block.data() + sizeof first, rest.data(), rest.size());
+    const XXH128_hash_t h = XXH3_128bits(block.data(), sizeof first + rest.size());
+    return {h.high64, h.low64};
+  }
+  const XXH128_hash_t h = XXH3_128bits_withSeed(rest.data(), rest.size(), first.low);
+  return Hasher().add(first).add(Digest{h.high64, h.low64}).digest();
 }
 
 std::string Digest::hex() const {

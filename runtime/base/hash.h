@@ -57,6 +57,9 @@ class Hasher {
   std::unique_ptr<State> state_;
 };
 
+/// Digest of a digest followed by bytes, without a Hasher's set-up.
+Digest digestOf(const Digest& first, std::span<const std::byte> rest);
+
 }  // namespace sherd
 
 template <>

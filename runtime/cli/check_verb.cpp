@@ -1,24 +1,27 @@
 #include "cli/open_graph.h"
+#include "cli/shots.h"
 #include "cli/verbs.h"
 
 namespace sherd {
 
-int checkVerb(const CheckOptions& options, const Registry& registry, const Environment& environment,
+int checkVerb(const ShotOptions& options, const Registry& registry, const Environment& environment,
               Console& console) {
-  int code = kOk;
-  for (const std::string& path : options.graphs) {
+  Diagnostics arguments;
+  const std::vector<std::string> files = graphFiles(options.graphs, arguments);
+  printDiagnostics(arguments, console.err);
+  int code = arguments.empty() ? kOk : kWrongInput;
+  for (const std::string& path : files) {
+    ShotOptions one = options;
+    one.graphs = {path};
     Diagnostics diagnostics;
-    GraphFile file;
-    const Graph graph = openGraph(path, options.vars, options.sets, registry, environment, diagnostics, file);
-    std::vector<int> all;
-    for (std::size_t i = 0; i < graph.nodes.size(); ++i) all.push_back(static_cast<int>(i));
-    checkFiles(graph, all, diagnostics);
+    const Shots shots = openShots(one, Opening::ToCheck, registry, environment, diagnostics);
     printDiagnostics(diagnostics, console.err);
-    if (diagnostics.empty())
-      console.out << path << ": " << (file.subgraph != nullptr ? "a subgraph of " : "")
-                  << countText(graph.nodes.size(), "node") << ", no errors\n";
-    else
+    if (!diagnostics.empty()) {
       code = kWrongInput;
+      continue;
+    }
+    console.out << path << ": " << (shots.isSubgraph.front() ? "a subgraph of " : "")
+                << countText(shots.graph.nodes.size(), "node") << ", no errors\n";
   }
   return code;
 }

@@ -33,16 +33,19 @@ Result<Registry> loadNodes() {
 struct Commands {
   CLI::App app{"sherd breaks things: runs node graphs that fracture models.", "sherd"};
   RunOptions run;
-  CheckOptions check;
+  PlanOptions plan;
+  ShotOptions check;
   NodesOptions nodes;
   CacheOptions cache;
   int threads = 0;
-  CLI::App *runApp = nullptr, *checkApp = nullptr, *nodesApp = nullptr, *cacheApp = nullptr;
+  CLI::App *runApp = nullptr, *planApp = nullptr, *checkApp = nullptr, *nodesApp = nullptr,
+           *cacheApp = nullptr;
 
   Commands() {
     app.set_version_flag("--version", std::string("sherd ") + SHERD_VERSION);
     app.require_subcommand(1);
     addRun();
+    addPlan();
     addCheck();
     addNodes();
     addCache();
@@ -55,18 +58,43 @@ struct Commands {
     verb.add_option(name, list, help)->type_name(form)->allow_extra_args(false);
   }
 
+  /// What the verbs that open graphs have in common.
+  static void addShots(CLI::App& verb, ShotOptions& options) {
+    verb.add_option("GRAPH", options.graphs, "graph files, directories of them, or patterns with * and ?")
+        ->required();
+    addRepeated(verb, "--set", options.sets, "NODE.PARAM=VALUE", "set a parameter");
+    addRepeated(verb, "--var", options.vars, "NAME=VALUE", "set a variable of the graph");
+    verb.add_option("--frames", options.frames, "frames in place of the graph's own, as 1001-1100x2")
+        ->type_name("RANGE");
+    addRepeated(verb, "--allow-write", options.allowWrite, "DIR",
+                "allow the graph to write there, besides its own folder");
+  }
+  static void addEvaluation(CLI::App& verb, ShotOptions& options) {
+    auto* target = verb.add_option("--target", options.target, "only what this target of the graph names");
+    verb.add_option("--to", options.to, "only this node and what it needs")->excludes(target);
+    auto* cache =
+        verb.add_option("--cache", options.cache, "where results are kept between runs")->type_name("DIR");
+    verb.add_flag("--no-cache", options.noCache, "look up nothing and keep nothing")->excludes(cache);
+  }
+
   void addRun() {
-    runApp = app.add_subcommand("run", "evaluate a graph");
-    runApp->add_option("GRAPH", run.graph, "a graph file")->required();
-    auto* target = runApp->add_option("--target", run.target, "only what this target of the graph names");
-    runApp->add_option("--to", run.to, "only this node and what it needs")->excludes(target);
-    addRepeated(*runApp, "--set", run.sets, "NODE.PARAM=VALUE", "set a parameter");
-    addRepeated(*runApp, "--var", run.vars, "NAME=VALUE", "set a variable of the graph");
+    runApp = app.add_subcommand("run", "evaluate graphs");
+    addShots(*runApp, run);
+    addEvaluation(*runApp, run);
     runApp->add_option("--threads", threads, "threads to use; 0: all of the machine's")
         ->check(CLI::Range(0, 1024));
     runApp->add_flag("--keep-going", run.keepGoing, "after a failure, go on with what doesn't depend on it");
     runApp->add_flag("--json", run.json, "print one JSON object a line");
     runApp->add_flag("--quiet", run.quiet, "print warnings and errors only");
+    runApp->add_option("--report", run.report, "write a page that shows what happened")
+        ->type_name("FILE.html");
+  }
+
+  void addPlan() {
+    planApp = app.add_subcommand("plan", "tell what a run would do, and why, without doing it");
+    addShots(*planApp, plan);
+    addEvaluation(*planApp, plan);
+    planApp->add_flag("--json", plan.json, "print one JSON object a line");
   }
 
   void addNodes() {
@@ -82,9 +110,7 @@ struct Commands {
 
   void addCheck() {
     checkApp = app.add_subcommand("check", "find all errors of graphs without running them");
-    checkApp->add_option("GRAPH", check.graphs, "graph files")->required();
-    addRepeated(*checkApp, "--set", check.sets, "NODE.PARAM=VALUE", "set a parameter");
-    addRepeated(*checkApp, "--var", check.vars, "NAME=VALUE", "set a variable of the graph");
+    addShots(*checkApp, check);
   }
 
   void addCache() {
@@ -122,12 +148,13 @@ std::vector<std::string> optionNames(const CLI::App& verb) {
 
 /// What the parser found wrong.
 Error parseError(const Commands& commands, const CLI::ParseError& error) {
-  for (const CLI::App* verb : {commands.runApp, commands.checkApp, commands.nodesApp, commands.cacheApp}) {
+  for (const CLI::App* verb :
+       {commands.runApp, commands.planApp, commands.checkApp, commands.nodesApp, commands.cacheApp}) {
     if (!verb->parsed()) continue;
     if (const std::vector<std::string> left = verb->remaining(); !left.empty())
       return unexpectedArgument(verb->get_name(), left.front(), optionNames(*verb));
     const bool needsGraph =
-        (verb == commands.runApp || verb == commands.checkApp) && verb->get_option("GRAPH")->count() == 0;
+        verb->get_option_no_throw("GRAPH") != nullptr && verb->get_option("GRAPH")->count() == 0;
     if (needsGraph && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
       return missingGraph(verb->get_name());
     return Error{
@@ -147,7 +174,9 @@ Result<Environment> makeEnvironment() {
   return Environment::ofProcess(findAssets(variable, programDirectory()));
 }
 
-int runVerbOf(Commands& commands, Console& console) {
+int runVerbOf(Commands& commands, const std::vector<std::string>& arguments, Console& console) {
+  commands.run.command = "sherd";
+  for (const std::string& argument : arguments) commands.run.command += ' ' + argument;
   setThreadLimit(commands.threads);
   if (commands.cacheApp->parsed()) return cacheVerb(commands.cache, Environment::ofProcess({}), console);
   const auto registry = loadNodes();
@@ -157,6 +186,7 @@ int runVerbOf(Commands& commands, Console& console) {
   if (!found.ok()) return refuse(found.error(), commands.run.json, console);
   const Environment& environment = *found;
   if (commands.runApp->parsed()) return runVerb(commands.run, *registry, environment, console);
+  if (commands.planApp->parsed()) return planVerb(commands.plan, *registry, environment, console);
   return checkVerb(commands.check, *registry, environment, console);
 }
 
@@ -175,7 +205,7 @@ int runCommandLine(const std::vector<std::string>& arguments, Console& console) 
     } catch (const CLI::ParseError& e) {
       return refuse(parseError(commands, e), events, console);
     }
-    return runVerbOf(commands, console);
+    return runVerbOf(commands, arguments, console);
   } catch (const std::bad_alloc&) {
     return refuse(failure("out of memory", "close other programs or use a smaller model"), events, console,
                   kNodeFailed);

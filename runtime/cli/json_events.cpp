@@ -25,14 +25,16 @@ void JsonEvents::finished(const NodeReport& report) {
   for (const Message& line : report.messages)
     addLine(line.level == LogLevel::Warning ? "warning: " : "", line.text);
   if (report.error) addLine("", report.error->text());
-  print(Json{{"event", "node"},
-             {"name", node.name},
-             {"type", node.type->name},
-             {"state", stateName(report.state)},
-             {"ms", report.ms},
-             {"threads", report.threads},
-             {"message", message}},
-        console_.out);
+  Json event{{"event", "node"}};
+  if (graph_.shots.size() > 1) event["graph"] = graph_.shots[static_cast<std::size_t>(node.shot)];
+  event["name"] = node.name;
+  if (node.context != 0) event["context"] = graph_.contexts[static_cast<std::size_t>(node.context)].label;
+  event["type"] = node.type->name;
+  event["state"] = stateName(report.state);
+  event["ms"] = report.ms;
+  event["threads"] = report.threads;
+  event["message"] = message;
+  print(event, console_.out);
 }
 
 void jsonErrors(const Diagnostics& diagnostics, std::ostream& out) {

@@ -2,6 +2,8 @@
 //   {"event":"error","message":…}                          what is wrong with graph or command line, also
 //                                                          where that can't be parsed but has --json
 //   {"event":"node","name":…,"type":…,"state":…,"ms":…,"threads":…,"message":…}
+//                                                          with "context" where it stands for a frame or a
+//                                                          wedge, and "graph" where there are several
 //   {"event":"done","ok":…,"ms":…,"outputs":[files]}       always last
 #pragma once
 

@@ -20,11 +20,10 @@ std::vector<Assignment> parseAll(const char* option, const std::vector<std::stri
 
 }  // namespace
 
-Graph openGraph(const std::string& path, const std::vector<std::string>& vars,
-                const std::vector<std::string>& sets, const Registry& registry,
+Graph openGraph(const std::string& path, const ShotOptions& options, const Registry& registry,
                 const Environment& environment, Diagnostics& diagnostics, GraphFile& file) {
-  const Overrides overrides{parseAll("--var", vars, environment, diagnostics),
-                            parseAll("--set", sets, environment, diagnostics)};
+  const Overrides overrides{parseAll("--var", options.vars, environment, diagnostics),
+                            parseAll("--set", options.sets, environment, diagnostics), options.frames};
   const std::size_t before = diagnostics.count();
   file = readGraphFile(path, diagnostics);
   expandSubgraphs(file, diagnostics);

@@ -39,9 +39,15 @@ ProgressPrinter::ProgressPrinter(const Graph& graph, const std::vector<int>& nee
     : graph_(graph), console_(console), quiet_(quiet), total_(needed.size()) {
   for (const int i : needed) {
     const Graph::Node& node = graph.nodes[static_cast<std::size_t>(i)];
-    nameWidth_ = std::min(kWidestName, std::max(nameWidth_, node.name.size()));
+    nameWidth_ = std::min(kWidestName, std::max(nameWidth_, nameOf(i).size()));
     typeWidth_ = std::min(kWidestName, std::max(typeWidth_, node.type->name.size()));
   }
+}
+
+std::string ProgressPrinter::nameOf(int node) const {
+  const std::string& shot =
+      graph_.shots[static_cast<std::size_t>(graph_.nodes[static_cast<std::size_t>(node)].shot)];
+  return (shot.empty() ? "" : shot + ": ") + graph_.labelOf(node);
 }
 
 void ProgressPrinter::started(int node) {
@@ -61,9 +67,11 @@ void ProgressPrinter::finished(const NodeReport& report) {
   clearLine();
   const bool warned = std::any_of(report.messages.begin(), report.messages.end(),
                                   [](const Message& m) { return m.level == LogLevel::Warning; });
-  if (report.state != NodeState::Skipped && (!quiet_ || warned)) {
-    console_.out << padded(node.name, nameWidth_) << "  " << padded(node.type->name, typeWidth_) << "  "
-                 << stateText(report) << '\n';
+  // Of thousands of frames that are there already, the count at the end says enough.
+  const bool isQuietHit = report.state == NodeState::Hit && total_ > kMostHits && !warned;
+  if (report.state != NodeState::Skipped && !isQuietHit && (!quiet_ || warned)) {
+    console_.out << padded(nameOf(report.node), nameWidth_) << "  " << padded(node.type->name, typeWidth_)
+                 << "  " << stateText(report) << '\n';
     printMessages(report);
   }
   console_.out.flush();
@@ -92,7 +100,7 @@ void ProgressPrinter::showLine(bool now) {
   std::string names;
   for (const auto& [node, share] : running_) {
     done += share;
-    names += (names.empty() ? "" : ", ") + graph_.nodes[static_cast<std::size_t>(node)].name;
+    names += (names.empty() ? "" : ", ") + nameOf(node);
     if (share > 0) names += fmt::format(" {:.0f} %", share * 100);
   }
   const double share = total_ == 0 ? 1 : done / static_cast<double>(total_);

@@ -26,6 +26,8 @@ class ProgressPrinter : public EvalListener {
 
  private:
   using Clock = std::chrono::steady_clock;
+  static constexpr std::size_t kMostHits = 200;  ///< nodes, beyond which hits are not told one by one
+  std::string nameOf(int node) const;
   void printMessages(const NodeReport& report);
   void showLine(bool now);
   void clearLine();

@@ -1,12 +1,13 @@
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 
 #include "cli/json_events.h"
-#include "cli/open_graph.h"
 #include "cli/progress.h"
+#include "cli/report_data.h"
+#include "cli/text_table.h"
 #include "cli/verbs.h"
-#include "graph/subgraphs.h"
 
 namespace sherd {
 namespace {
@@ -62,18 +63,31 @@ void printSummary(const EvalReport& report, const std::vector<std::string>& file
   console.out << ")\n" << std::flush;
 }
 
-/// What the file may say but this program can't do yet. A wedge stands for several runs, and one of them
-/// would not be what was asked for. A frame range is: whatever reads ${frame} is an error, so all frames are
-/// the same.
-void tellUnsupported(const GraphFile& file, Diagnostics& diagnostics, Console& console) {
-  if (file.wedge)
-    diagnostics.add(file.wedge->origin, "wedge", "wedges are not supported yet",
-                    "run once per value, with --var");
-  if (file.frames)
-    console.err
-        << file.frames->origin.text()
-        << ": warning: frames: frame ranges are not supported yet; nothing here depends on the frame, "
-           "so one evaluation stands for all\n";
+/// A line for each of several graphs.
+void printShots(const Shots& shots, const EvalReport& report, Console& console) {
+  if (shots.shots.size() < 2) return;
+  struct Count {
+    std::array<int, 4> states{};
+    double ms = 0;
+  };
+  std::vector<Count> counts(shots.shots.size());
+  for (const NodeReport& node : report.nodes) {
+    Count& count =
+        counts[static_cast<std::size_t>(shots.graph.nodes[static_cast<std::size_t>(node.node)].shot)];
+    ++count.states[static_cast<std::size_t>(node.state)];
+    count.ms += node.ms;
+  }
+  std::vector<Row> rows{{"graph", "ran", "cached", "failed", "skipped", "node time", ""}};
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    const auto& states = counts[k].states;
+    const bool ok = states[2] + states[3] == 0;
+    rows.push_back({shots.shots[k].name, std::to_string(states[0]), std::to_string(states[1]),
+                    std::to_string(states[2]), std::to_string(states[3]), durationText(counts[k].ms),
+                    ok              ? "ok"
+                    : states[2] > 0 ? "FAILED"
+                                    : "not finished"});
+  }
+  printTable(rows, console.width, console.out);
 }
 
 int refuse(const Diagnostics& diagnostics, const RunOptions& options, Console& console) {
@@ -85,38 +99,55 @@ int refuse(const Diagnostics& diagnostics, const RunOptions& options, Console& c
   return kWrongInput;
 }
 
+int refuse(const Error& error, const RunOptions& options, Console& console) {
+  Diagnostics diagnostics;
+  diagnostics.add({}, "", error);
+  return refuse(diagnostics, options, console);
+}
+
 }  // namespace
 
 int runVerb(const RunOptions& options, const Registry& registry, const Environment& environment,
             Console& console) {
   Diagnostics diagnostics;
-  GraphFile file;
-  const Graph graph =
-      openGraph(options.graph, options.vars, options.sets, registry, environment, diagnostics, file);
-  tellUnsupported(file, diagnostics, console);
-  refuseSubgraphFile(file, diagnostics);
+  const Shots shots = openShots(options, Opening::ToRun, registry, environment, diagnostics);
   if (!diagnostics.empty()) return refuse(diagnostics, options, console);
-  const auto wanted = wantedNodes(graph, options.target, options.to);
-  if (!wanted.ok()) diagnostics.add({file.source, 0, 0}, "", wanted.error());
-  const std::vector<int> needed = wanted.ok() ? neededNodes(graph, *wanted) : std::vector<int>();
-  checkFiles(graph, needed, diagnostics);
-  if (!diagnostics.empty()) return refuse(diagnostics, options, console);
-
-  ProgressPrinter printer(graph, needed, options.quiet, console);
-  JsonEvents events(graph, console);
-  EvalListener& listener = options.json ? static_cast<EvalListener&>(events) : printer;
+  auto opened = openStore(options, environment, console.err);
+  if (!opened.ok()) return refuse(opened.error(), options, console);
+  DiskStore* store = opened.value().get();
+  const std::vector<int> needed = neededNodes(shots.graph, shots.wanted);
+  const EvalOptions how{.keepGoing = options.keepGoing, .values = false, .disk = store};
   Cache cache;
-  const EvalReport report =
-      evaluate(graph, *wanted, cache, console.cancel, {.keepGoing = options.keepGoing}, &listener);
+  std::vector<PlanEntry> plan;
+  if (!options.report.empty())
+    plan = planRun(shots.graph, shots.wanted, cache, how, readHistories(shots, store));
+
+  ProgressPrinter printer(shots.graph, needed, options.quiet, console);
+  JsonEvents events(shots.graph, console);
+  EvalListener& listener = options.json ? static_cast<EvalListener&>(events) : printer;
+  const EvalReport report = evaluate(shots.graph, shots.wanted, cache, console.cancel, how, &listener);
+  if (store != nullptr) writeHistories(shots, report, *store);
   const std::vector<std::string> files = writtenFiles(report);
   if (!options.json) printer.end();
-  printDiagnostics(failures(graph, report), console.err);
-  if (options.json)
+  printDiagnostics(failures(shots.graph, report), console.err);
+  bool isReported = true;
+  if (!options.report.empty()) {
+    const auto written = writeReport(reportOf(shots, options.command, plan, report), options.report);
+    if (!written.ok()) {
+      Diagnostics problem;
+      problem.add({}, "--report", written.error());
+      printDiagnostics(problem, console.err);
+      isReported = false;
+    }
+  }
+  if (options.json) {
     jsonDone(report.ok(), report.ms, files, console.out);
-  else if (!options.quiet)
+  } else if (!options.quiet) {
+    printShots(shots, report, console);
     printSummary(report, files, console);
+  }
   if (report.cancelled) return kCancelled;
-  return report.ok() ? kOk : kNodeFailed;
+  return report.ok() && isReported ? kOk : kNodeFailed;
 }
 
 }  // namespace sherd

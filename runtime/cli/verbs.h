@@ -6,28 +6,29 @@
 #include <vector>
 
 #include "cli/console.h"
+#include "cli/shots.h"
 #include "graph/registry.h"
 #include "graph/variables.h"
 
 namespace sherd {
 
-struct RunOptions {
-  std::string graph;
-  std::string target, to;         ///< what to evaluate; both empty: the default of wantedNodes
-  std::vector<std::string> sets;  ///< "node.param=value"
-  std::vector<std::string> vars;  ///< "name=value"
+struct RunOptions : ShotOptions {
   bool keepGoing = false;
-  bool json = false;   ///< one object a line instead of text
-  bool quiet = false;  ///< warnings and errors only
+  bool json = false;    ///< one object a line instead of text
+  bool quiet = false;   ///< warnings and errors only
+  std::string report;   ///< an HTML file to write; empty: none
+  std::string command;  ///< as it was typed, for the report
 };
 int runVerb(const RunOptions& options, const Registry& registry, const Environment& environment,
             Console& console);
 
-struct CheckOptions {
-  std::vector<std::string> graphs;
-  std::vector<std::string> sets, vars;
+struct PlanOptions : ShotOptions {
+  bool json = false;  ///< one object a line instead of text
 };
-int checkVerb(const CheckOptions& options, const Registry& registry, const Environment& environment,
+int planVerb(const PlanOptions& options, const Registry& registry, const Environment& environment,
+             Console& console);
+
+int checkVerb(const ShotOptions& options, const Registry& registry, const Environment& environment,
               Console& console);
 
 struct NodesOptions {

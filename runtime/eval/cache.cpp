@@ -7,9 +7,10 @@ namespace {
 
 std::size_t sizeOf(const CachedResult& result) {
   std::size_t bytes = 256;  // the entry itself, about
-  for (const auto& [port, output] : result.outputs)
-    bytes += port.size() + sizeof output + (output.value.empty() ? 0 : output.value.bytes());
-  for (const Message& message : result.messages) bytes += sizeof message + message.text.size();
+  for (const Output& output : result.outputs)
+    bytes += sizeof output + (output.value.empty() ? 0 : output.value.bytes());
+  for (const Message& message : result.record.messages) bytes += sizeof message + message.text.size();
+  for (const WrittenFile& file : result.record.written) bytes += sizeof file + file.path.size();
   return bytes;
 }
 
@@ -23,21 +24,22 @@ std::optional<CachedResult> Cache::find(const Digest& key) {
   return found->second->result;
 }
 
-void Cache::insert(const Digest& key, CachedResult result) {
+void Cache::insert(CachedResult result) {
   const std::size_t bytes = sizeOf(result);
-  if (bytes > mostBytes_) return;
   const std::lock_guard lock(mutex_);
-  if (byKey_.contains(key)) return;  // equal keys stand for equal results
-  while (bytes_ + bytes > mostBytes_) dropLast();
-  entries_.push_front({key, std::move(result), bytes});
+  if (const auto old = byKey_.find(result.record.key); old != byKey_.end()) drop(old->second);
+  if (bytes > mostBytes_) return;
+  while (bytes_ + bytes > mostBytes_) drop(std::prev(entries_.end()));
+  const Digest key = result.record.key;
+  entries_.push_front({std::move(result), bytes});
   byKey_.emplace(key, entries_.begin());
   bytes_ += bytes;
 }
 
-void Cache::dropLast() {
-  bytes_ -= entries_.back().bytes;
-  byKey_.erase(entries_.back().key);
-  entries_.pop_back();
+void Cache::drop(std::list<Entry>::iterator entry) {
+  bytes_ -= entry->bytes;
+  byKey_.erase(entry->result.record.key);
+  entries_.erase(entry);
 }
 
 std::size_t Cache::bytes() const {

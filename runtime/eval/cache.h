@@ -4,31 +4,29 @@
 
 #include <cstddef>
 #include <list>
-#include <map>
 #include <mutex>
 #include <optional>
-#include <string>
 #include <unordered_map>
 #include <vector>
 
-#include "base/exec.h"
 #include "base/hash.h"
 #include "eval/result.h"
 #include "graph/value.h"
 
 namespace sherd {
 
-/// A value on a wire together with its digest, which is computed once.
+/// A value on a wire together with its digest, which is computed once. The digest alone may be known; both
+/// are empty where the node left the output unset.
 struct Output {
   Value value;
   Digest digest;
 };
-using Outputs = std::map<std::string, Output>;
+using Outputs = std::vector<Output>;  ///< in the order of the type's outputs
 
-/// What a node made, and what it said while it did: a hit says it again.
+/// What a node made, and what is known of it.
 struct CachedResult {
   Outputs outputs;
-  std::vector<Message> messages;
+  ResultRecord record;
 };
 
 class Cache {
@@ -39,20 +37,19 @@ class Cache {
 
   /// O(1).
   std::optional<CachedResult> find(const Digest& key);
-  /// Keeps the result, unless it alone is larger than the bound. Values that live on elsewhere count all the
-  /// same.
-  void insert(const Digest& key, CachedResult result);
+  /// Keeps the result in place of an older one of the same key, unless it alone is larger than the bound.
+  /// Values that live on elsewhere count all the same.
+  void insert(CachedResult result);
 
   std::size_t bytes() const;
   std::size_t size() const;
 
  private:
   struct Entry {
-    Digest key;
     CachedResult result;
     std::size_t bytes = 0;
   };
-  void dropLast();
+  void drop(std::list<Entry>::iterator entry);
 
   const std::size_t mostBytes_;
   mutable std::mutex mutex_;

@@ -1,264 +1,246 @@
 #include "eval/evaluator.h"
 
 #include <algorithm>
-#include <chrono>
-#include <mutex>
-#include <unordered_map>
 
-#include "base/parallel.h"
-#include "eval/key.h"
-#include "eval/node_run.h"
+#include "eval/evaluation.h"
 
 namespace sherd {
+
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double msSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+double msSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-class Evaluation {
- public:
-  Evaluation(const Graph& graph, const std::vector<int>& wanted, Cache& cache, CancelToken& token,
-             const EvalOptions& options, EvalListener* listener)
-      : graph_(graph),
-        cache_(cache),
-        token_(token),
-        options_(options),
-        listener_(listener),
-        slots_(graph.nodes.size()) {
-    for (const int i : wanted) slot(i).wanted = true;
-    const std::vector<int> needed = neededNodes(graph, wanted);
-    for (const int i : needed)
-      forEachWire(i, [&](const Graph::Wire& wire) {
-        ++slot(i).missing;
-        ++slot(wire.node).readers;
-        slot(wire.node).consumers.push_back(i);
-      });
-    for (auto it = needed.rbegin(); it != needed.rend(); ++it)  // the last is taken first
-      if (slot(*it).missing == 0) ready_.push_back(*it);
-  }
+}  // namespace
 
-  EvalReport evaluate() {
-    const auto start = Clock::now();
+EvalReport Evaluation::evaluate() {
+  const auto start = Clock::now();
+  sweep();
+  tellReports(std::move(outbox_));
+  outbox_.clear();
+  if (!ready_.empty())
     inArena([&] {
       TaskGroup group;
       group_ = &group;
       dispatch();
       group.wait();
     });
-    // A failure sets the token as well; only what came from outside counts as cancelled.
-    report_.cancelled = token_.cancelled() && !stopped_;
-    report_.ms = msSince(start);
-    return std::move(report_);
-  }
+  // A failure sets the token as well; only what came from outside counts as cancelled.
+  report_.cancelled = token_.cancelled() && !stopped_;
+  finalise();
+  tellReports(std::move(outbox_));
+  report_.ms = msSince(start);
+  return std::move(report_);
+}
 
- private:
-  /// What is known of one node. Guarded by mutex_; but `outputs`, once there, are read without it by the
-  /// nodes that wait for them, until the last of these has ended.
-  struct Slot {
-    bool wanted = false;
-    bool blocked = false;        ///< something that it needs failed or was skipped
-    std::size_t missing = 0;     ///< wires whose other end hasn't ended yet
-    std::size_t readers = 0;     ///< wires that have yet to be read
-    std::vector<int> consumers;  ///< one entry per wire
-    Outputs outputs;
-  };
+template <class F>
+void Evaluation::tell(F&& f) {
+  if (listener_ == nullptr) return;
+  const std::lock_guard lock(listenerMutex_);
+  f(*listener_);
+}
 
-  /// A node on its way through process().
-  struct Work {
-    NodeReport report;
-    ParamValues params;
-    Outputs inputs;
-    Clock::time_point start = Clock::now();
-  };
+void Evaluation::tellReports(std::vector<const NodeReport*> reports) {
+  if (listener_ == nullptr || reports.empty()) return;
+  const std::lock_guard lock(listenerMutex_);
+  for (const NodeReport* report : reports) listener_->finished(*report);
+}
 
-  Slot& slot(int i) { return slots_[static_cast<std::size_t>(i)]; }
-  const Graph::Node& node(int i) const { return graph_.nodes[static_cast<std::size_t>(i)]; }
-
-  template <class F>
-  void forEachWire(int i, F&& f) const {
-    for (const Graph::Wire& wire : node(i).inputs) f(wire);
-    for (const Graph::Wire& wire : node(i).wiredParams) f(wire);
-  }
-
-  template <class F>
-  void tell(F&& f) {
-    if (listener_ == nullptr) return;
-    const std::lock_guard lock(listenerMutex_);
-    f(*listener_);
-  }
-
-  /// Starts tasks for ready nodes, at most one per thread: more would only be taken up by threads that wait
-  /// inside of a node, and nest there.
-  void dispatch() {
-    std::vector<int> starting;
-    {
-      const std::lock_guard lock(mutex_);
-      const auto limit = static_cast<std::size_t>(threadLimit());
-      for (; !ready_.empty() && active_ < limit; ++active_) {
-        starting.push_back(ready_.back());
-        ready_.pop_back();
-      }
-    }
-    for (const int i : starting) group_->run([this, i] { task(i); });
-  }
-
-  void task(int i) {
-    process(i);
-    {
-      const std::lock_guard lock(mutex_);
-      --active_;
-    }
-    dispatch();
-  }
-
-  bool mayRun(int i) {
+/// Starts tasks for ready jobs, at most one per thread: more would only be taken up by threads that wait
+/// inside of a node, and nest there.
+void Evaluation::dispatch() {
+  std::vector<Job> starting;
+  {
     const std::lock_guard lock(mutex_);
-    return !slot(i).blocked && !token_.cancelled();
-  }
-
-  void process(int i) {
-    Work work;
-    work.report.node = i;
-    if (!mayRun(i)) return finish(std::move(work.report), {});
-    work.report.threads = threadLimit();
-    work.inputs = gather(node(i).inputs);
-    auto params = finalParams(node(i), gather(node(i).wiredParams));
-    if (!params.ok()) return fail(std::move(work.report), params.error());
-    work.params = std::move(params).value();
-    if (node(i).type->writesFiles) {
-      Outputs outputs = run(work);
-      return finish(std::move(work.report), outputs);
+    const auto limit = static_cast<std::size_t>(threadLimit());
+    for (; !ready_.empty() && active_ < limit; ++active_) {
+      starting.push_back(ready_.back());
+      ready_.pop_back();
     }
-    const auto key = resultKey(*node(i).type, work.params, work.inputs, files_);
-    if (key.ok())
-      lookUpOrRun(std::move(work), *key);
-    else
-      fail(std::move(work.report), key.error());
   }
-
-  void lookUpOrRun(Work work, const Digest& key) {
-    {
-      const std::lock_guard lock(mutex_);
-      const auto [waiting, isFirst] = inFlight_.try_emplace(key);
-      if (!isFirst) {  // another node is making this very result, and will end this one too
-        waiting->second.push_back(work.report.node);
-        return;
+  for (const Job job : starting)
+    group_->run([this, job] {
+      doJob(job);
+      {
+        const std::lock_guard lock(mutex_);
+        --active_;
       }
+      dispatch();
+    });
+}
+
+void Evaluation::doJob(Job job) {
+  std::vector<const NodeReport*> reports;
+  {
+    const std::lock_guard lock(mutex_);
+    const State state = slot(job.node).state;
+    if (token_.cancelled() || state == State::Failed || state == State::Skipped) return;
+    if (job.output == Job::kRun && state == State::NeedsNames) {
+      const auto params = finalParams(node(job.node), gather(node(job.node).wiredParams));
+      if (params.ok())
+        look(job.node, *params);
+      else
+        fail(job.node, params.error());
+      drain();
+      reports.swap(outbox_);
+      job.node = -1;
     }
-    Outputs outputs;
-    if (auto cached = cache_.find(key)) {
-      work.report.state = NodeState::Hit;
-      work.report.messages = std::move(cached->messages);
-      work.report.ms = msSince(work.start);
-      outputs = std::move(cached->outputs);
+  }
+  tellReports(std::move(reports));
+  if (job.node < 0) return;
+  if (job.output == Job::kRun)
+    run(job.node);
+  else
+    load(job);
+}
+
+void Evaluation::load(Job job) {
+  const auto o = static_cast<std::size_t>(job.output);
+  Digest digest;
+  {
+    const std::lock_guard lock(mutex_);
+    if (slot(job.node).state != State::Known || has(slot(job.node), job.output)) return;
+    digest = slot(job.node).outputs[o].digest;
+  }
+  Value value = options_.disk->load(*node(job.node).type->outputs[o].value, digest);
+  std::vector<const NodeReport*> reports;
+  {
+    const std::lock_guard lock(mutex_);
+    Slot& s = slot(job.node);
+    if (has(s, job.output)) return;  // it ran meanwhile, for the sake of another output
+    if (!value.empty()) {
+      s.outputs[o].value = std::move(value);
+      signal(job.node, job.output);
     } else {
-      outputs = run(work);
-      if (work.report.state == NodeState::Run) cache_.insert(key, {outputs, work.report.messages});
+      s.lost |= std::uint64_t{1} << (o & 63);
+      if (s.state == State::Known) mustRun(job.node);
     }
-    std::vector<int> waiting;
-    {
-      const std::lock_guard lock(mutex_);
-      waiting = std::move(inFlight_.at(key));
-      inFlight_.erase(key);
+    drain();
+    reports.swap(outbox_);
+  }
+  tellReports(std::move(reports));
+}
+
+/// What came over the wires.
+std::vector<WireValue> Evaluation::gather(const std::vector<Graph::Wire>& wires) {
+  std::vector<WireValue> values;
+  values.reserve(wires.size());
+  for (const Graph::Wire& wire : wires) {
+    const Output& output = slot(wire.node).outputs[static_cast<std::size_t>(wire.output)];
+    values.push_back({output.value, output.digest});
+  }
+  return values;
+}
+
+ResultRecord Evaluation::recordOf(int i, const NodeResult& result, double ms) const {
+  const Slot& s = slots_[static_cast<std::size_t>(i)];
+  ResultRecord record;
+  record.key = s.key;
+  record.recipe = s.recipe;
+  record.ms = ms;
+  for (const Output& output : result.outputs)
+    record.outputs.push_back({output.digest, output.value.empty() ? 0 : output.value.bytes()});
+  record.messages = result.messages;
+  for (const std::string& path : result.written) record.written.push_back({path, FileIdentity::of(path)});
+  return record;
+}
+
+void Evaluation::warnOfDifference(int i, NodeResult& result) {
+  const Slot& s = slot(i);
+  if (!s.told) return;
+  for (std::size_t o = 0; o < s.outputs.size(); ++o)
+    if (s.outputs[o].digest != result.outputs[o].digest) {
+      result.messages.push_back({LogLevel::Warning,
+                                 "ran again and made another result than before from the same "
+                                 "input; this is a mistake in " +
+                                     node(i).type->name + ", please report it"});
+      return;
     }
-    for (const int other : waiting) {
-      NodeReport report = work.report;
-      report.node = other;
-      report.ms = 0;
-      if (report.state == NodeState::Run) report.state = NodeState::Hit;
-      finish(std::move(report), outputs);
-    }
-    finish(std::move(work.report), outputs);
+}
+
+void Evaluation::run(int i) {
+  const auto start = Clock::now();
+  const Graph::Node& n = node(i);
+  tell([i](EvalListener& listener) { listener.started(i); });
+  NodeResult result;
+  const std::vector<WireValue> inputs = gather(n.inputs);
+  const auto runWith = [&](const ParamValues& params) {
+    return runNode(graph_, i, params, inputs, token_,
+                   [&](double share) { tell([&](EvalListener& listener) { listener.progress(i, share); }); });
+  };
+  if (n.wiredParams.empty()) {
+    result = runWith(n.params);
+  } else if (auto params = finalParams(n, gather(n.wiredParams)); params.ok()) {
+    result = runWith(*params);
+  } else {
+    result.error = params.error();
+  }
+  const double ms = msSince(start);
+  // Under cancellation parallel loops leave blocks out, so neither result nor error of the node means
+  // anything; but files that it says it wrote are written.
+  const bool isVoid = token_.cancelled() && !(n.type->writesFiles && !result.error);
+  if (!isVoid && !result.error) warnOfDifference(i, result);
+  ResultRecord record;
+  if (!result.error && !isVoid) record = recordOf(i, result, ms);
+  const bool isWorthIt =
+      options_.disk != nullptr && !result.error && !isVoid &&
+      std::any_of(record.outputs.begin(), record.outputs.end(), [&](const OutputRecord& output) {
+        return !output.empty() && worthKeeping(ms, output.bytes);
+      });
+  if (!result.error && !isVoid) {
+    cache_.insert({result.outputs, record});  // before anybody may look for this key again
+    if (options_.disk != nullptr && !isWorthIt) options_.disk->record(record);
   }
 
-  /// What came over the wires; those that were left empty are not in it.
-  Outputs gather(const std::vector<Graph::Wire>& wires) {
-    Outputs values;
-    for (const Graph::Wire& wire : wires) {
-      const Outputs& from = slot(wire.node).outputs;
-      const auto found = from.find(wire.output);
-      if (found != from.end()) values.emplace(wire.to, found->second);
-    }
-    return values;
-  }
-
-  /// Runs the node and writes down how it went. Its outputs are empty unless it ran to its end.
-  Outputs run(Work& work) {
-    NodeReport& report = work.report;
-    const int i = report.node;
-    tell([i](EvalListener& listener) { listener.started(i); });
-    NodeResult result = runNode(node(i), work.params, work.inputs, token_, [&](double share) {
-      tell([&](EvalListener& listener) { listener.progress(i, share); });
-    });
-    report.ms = msSince(work.start);
-    report.messages = std::move(result.messages);
-    report.written = std::move(result.written);
-    if (!result.error && (node(i).type->writesFiles || !token_.cancelled())) {
-      report.state = NodeState::Run;
-      return std::move(result.outputs);
-    }
-    // Under cancellation parallel loops leave blocks out, so neither result nor error of the node means
-    // anything.
-    if (token_.cancelled()) return {};
-    report.state = NodeState::Failed;
-    report.error = std::move(result.error);
-    return {};
-  }
-
-  void fail(NodeReport report, const Error& error) {
-    report.state = NodeState::Failed;
-    report.error = error;
-    finish(std::move(report), {});
-  }
-
-  /// Hands the outputs on, makes ready what now can run, and lets go of what nobody will read again.
-  void finish(NodeReport report, const Outputs& outputs) {
-    tell([&](EvalListener& listener) { listener.finished(report); });
+  std::vector<const NodeReport*> reports;
+  {
     const std::lock_guard lock(mutex_);
-    const int i = report.node;
-    const bool done = report.state == NodeState::Run || report.state == NodeState::Hit;
-    if (report.state == NodeState::Failed && !options_.keepGoing && !stopped_) {
-      stopped_ = true;
-      token_.cancel();
+    Slot& s = slot(i);
+    s.report.ms = ms;
+    s.report.threads = threadLimit();
+    s.ran = true;
+    s.report.messages = result.messages;
+    s.report.written = result.written;
+    s.report.bytes = 0;
+    for (const OutputRecord& output : record.outputs) s.report.bytes += output.bytes;
+    if (isVoid) {
+      // It is reported as skipped in the end.
+    } else if (result.error) {
+      fail(i, *result.error);
+    } else {
+      complete(i, result.outputs);
+      endTwins(i);
+      if (!isWorthIt) report(i, NodeState::Run);
+      slot(i).reported = true;
+      release(i);
     }
-    Slot& self = slot(i);
-    if (self.readers > 0) self.outputs = outputs;
-    if (self.wanted && done) report_.outputs[i] = outputs;
-    for (const int consumer : self.consumers) {
-      Slot& next = slot(consumer);
-      next.blocked = next.blocked || !done;
-      if (--next.missing == 0) ready_.push_back(consumer);
-    }
-    forEachWire(i, [&](const Graph::Wire& wire) {
-      Slot& source = slot(wire.node);
-      if (--source.readers == 0) source.outputs.clear();
-    });
-    report_.nodes.push_back(std::move(report));
+    drain();
+    reports.swap(outbox_);
   }
+  tellReports(std::move(reports));
+  if (!isWorthIt) return;
+  dispatch();  // what waited for this starts while this is written
+  const std::uint64_t kept = keep(record, result.outputs);
+  {
+    const std::lock_guard lock(mutex_);
+    slot(i).report.kept = kept;
+    report(i, NodeState::Run);
+    reports.swap(outbox_);
+  }
+  tellReports(std::move(reports));
+}
 
-  const Graph& graph_;
-  Cache& cache_;
-  CancelToken& token_;
-  const EvalOptions options_;
-  EvalListener* const listener_;
-  TaskGroup* group_ = nullptr;
-  FileDigests files_;
-
-  std::mutex listenerMutex_;
-  std::mutex mutex_;  ///< guards all below
-  std::vector<Slot> slots_;
-  std::vector<int> ready_;
-  std::size_t active_ = 0;  ///< tasks that are started and not over
-  bool stopped_ = false;    ///< by a failure
-  std::unordered_map<Digest, std::vector<int>>
-      inFlight_;  ///< results in the making, and who else waits for them
-  EvalReport report_;
-};
-
-}  // namespace
+/// Objects first: a record promises them.
+std::uint64_t Evaluation::keep(const ResultRecord& record, const Outputs& outputs) {
+  std::uint64_t kept = 0;
+  for (std::size_t o = 0; o < outputs.size(); ++o)
+    if (!outputs[o].value.empty() && worthKeeping(record.ms, record.outputs[o].bytes) &&
+        options_.disk->save(outputs[o].value, outputs[o].digest, record.ms))
+      kept += record.outputs[o].bytes;
+  options_.disk->record(record);
+  return kept;
+}
 
 const char* stateName(NodeState state) {
   switch (state) {
@@ -277,6 +259,11 @@ const char* stateName(NodeState state) {
 int EvalReport::count(NodeState state) const {
   return static_cast<int>(std::count_if(nodes.begin(), nodes.end(),
                                         [&](const NodeReport& report) { return report.state == state; }));
+}
+
+bool worthKeeping(double ms, std::uint64_t bytes) {
+  // A file costs about 0.1 ms to write and 0.1 ms to read, and a gigabyte a second both ways.
+  return ms > 0.2 + 2e-6 * static_cast<double>(bytes);
 }
 
 EvalReport evaluate(const Graph& graph, const std::vector<int>& wanted, Cache& cache, CancelToken& token,

@@ -1,5 +1,6 @@
 #include "eval/key.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -10,11 +11,7 @@
 
 namespace sherd {
 
-Result<Digest> FileDigests::of(const std::string& path) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (const auto found = known_.find(path); found != known_.end()) return found->second;
-  }
+Result<Digest> digestOfFile(const std::string& path) {
   std::error_code problem;
   if (std::filesystem::is_directory(path, problem))
     return failure('"' + path + "\" is a directory", "name a file");
@@ -31,33 +28,56 @@ Result<Digest> FileDigests::of(const std::string& path) {
     hasher.bytes(block.data(), static_cast<std::size_t>(file.gcount()));
   }
   if (file.bad()) return failure("\"" + path + "\" can't be read to its end");
-  const Digest digest = hasher.digest();
-  const std::lock_guard lock(mutex_);
-  return known_.emplace(path, digest).first->second;
+  return hasher.digest();
 }
 
-Result<Digest> resultKey(const NodeType& type, const ParamValues& params, const Outputs& inputs,
-                         FileDigests& files) {
-  Hasher hasher;
-  hasher.add(std::string_view(type.name)).add(type.version).add(type.implementation);
-  for (const ParamInfo& info : type.params) {
-    const ParamValue& value = params.at(info.name);
-    hasher.add(std::string_view(info.name));
-    const std::string* path = info.kind == ParamKind::InputFile ? std::get_if<std::string>(&value) : nullptr;
-    if (path != nullptr && !path->empty()) {
-      auto content = files.of(*path);
-      if (!content.ok()) {
-        Error error = content.error();
-        error.port = info.name;
-        return error;
-      }
-      hasher.add(*content).add(std::string_view(std::filesystem::path(*path).filename().native()));
-    } else {
-      hashParam(hasher, value);
-    }
+Result<Digest> FileDigests::of(const std::string& path) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = known_.find(path); found != known_.end()) return found->second;
   }
-  for (const auto& [port, output] : inputs) hasher.add(std::string_view(port)).add(output.digest);
+  // The identity is taken before reading: a file that changes meanwhile is read again next time.
+  const FileIdentity identity = FileIdentity::of(path);
+  std::optional<Digest> digest;
+  if (disk_ != nullptr && identity.exists()) digest = disk_->fileDigest(path, identity);
+  if (!digest) {
+    SHERD_ASSIGN(digest, digestOfFile(path));
+    if (disk_ != nullptr && identity.exists()) disk_->setFileDigest(path, identity, *digest);
+  }
+  const std::lock_guard lock(mutex_);
+  return known_.emplace(path, *digest).first->second;
+}
+
+Result<Digest> recipeWithFiles(const Graph::Node& node, const ParamValues& params, FileDigests& files) {
+  if (!node.readsFiles) return node.recipe;
+  Hasher hasher;
+  hasher.add(node.recipe);
+  for (const ParamInfo& info : node.type->params) {
+    const std::string* path =
+        info.kind == ParamKind::InputFile ? std::get_if<std::string>(&params.at(info.name)) : nullptr;
+    if (path == nullptr || path->empty()) continue;
+    auto content = files.of(*path);
+    if (!content.ok()) {
+      Error error = content.error();
+      error.port = info.name;
+      return error;
+    }
+    hasher.add(std::string_view(info.name)).add(*content);
+    hasher.add(std::string_view(std::filesystem::path(*path).filename().native()));
+  }
   return hasher.digest();
+}
+
+Digest resultKey(const Digest& recipe, std::span<const KeyInput> inputs) {
+  return digestOf(recipe, std::as_bytes(inputs));
+}
+
+Digest labelDigest(const Graph& graph, const Graph::Node& node, const Graph::Wire& wire, bool isParam) {
+  if (isParam || !node.type->inputs[static_cast<std::size_t>(wire.to)].gathers) return {};
+  const Graph::Node& source = graph.nodes[static_cast<std::size_t>(wire.node)];
+  return Hasher()
+      .add(std::string_view(graph.contexts[static_cast<std::size_t>(source.context)].label))
+      .digest();
 }
 
 }  // namespace sherd

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <exception>
+#include <filesystem>
+#include <mutex>
 #include <new>
 
 #include "graph/param.h"
@@ -41,8 +43,8 @@ Result<void> callNode(const NodeType& type, const ParamValues& params, NodeIo& i
   }
 }
 
-Digest digestOf(const Value& value, const Outputs& inputs) {
-  for (const auto& [port, input] : inputs)
+Digest digestOf(const Value& value, std::span<const WireValue> inputs) {
+  for (const WireValue& input : inputs)
     if (!input.value.empty() && input.value.address() == value.address() &&
         input.value.type().name == value.type().name)
       return input.digest;
@@ -50,8 +52,9 @@ Digest digestOf(const Value& value, const Outputs& inputs) {
 }
 
 /// Takes the outputs over with their digests, if they are what the type declares.
-std::optional<Error> collect(const NodeType& type, const NodeIo& io, const Outputs& inputs,
+std::optional<Error> collect(const NodeType& type, const NodeIo& io, std::span<const WireValue> inputs,
                              Outputs& outputs) {
+  outputs.resize(type.outputs.size());
   for (const auto& [port, value, label] : io.outputs()) {
     const PortInfo* declared = type.output(port);
     if (declared == nullptr)
@@ -61,41 +64,56 @@ std::optional<Error> collect(const NodeType& type, const NodeIo& io, const Outpu
     if (declared->type != value.type().name)
       return failure("the node set a " + value.type().name + " where it declares a " + declared->type,
                      "this is a mistake in " + type.name + ", please report it", port);
-    outputs[port] = {value, digestOf(value, inputs)};
+    outputs[static_cast<std::size_t>(declared - type.outputs.data())] = {value, digestOf(value, inputs)};
   }
+  return std::nullopt;
+}
+
+/// Hands the inputs over. An Error where a required one is missing.
+std::optional<Error> setInputs(const Graph& graph, const Graph::Node& node, std::span<const WireValue> inputs,
+                               NodeIo& io) {
+  std::vector<bool> there(node.type->inputs.size(), false);
+  for (std::size_t w = 0; w < inputs.size(); ++w) {
+    const Graph::Wire& wire = node.inputs[w];
+    const auto place = static_cast<std::size_t>(wire.to);
+    const PortInfo& port = node.type->inputs[place];
+    if (inputs[w].value.empty()) continue;
+    there[place] = true;
+    const auto context = graph.nodes[static_cast<std::size_t>(wire.node)].context;
+    io.setInput(port.name, inputs[w].value,
+                port.gathers ? graph.contexts[static_cast<std::size_t>(context)].label : std::string());
+  }
+  for (std::size_t p = 0; p < there.size(); ++p)
+    if (node.type->inputs[p].required && !there[p])
+      return failure("nothing came over the wire: the output that it comes from was left empty",
+                     "see the messages of that node", node.type->inputs[p].name);
   return std::nullopt;
 }
 
 }  // namespace
 
-Result<ParamValues> finalParams(const Graph::Node& node, const Outputs& wired) {
+Result<ParamValues> finalParams(const Graph::Node& node, std::span<const WireValue> wired) {
   ParamValues params = node.params;
-  for (const Graph::Wire& wire : node.wiredParams) {
-    const auto found = wired.find(wire.to);
-    const Value value = found == wired.end() ? Value() : found->second.value;
-    const auto directory =
-        node.origin.source == nullptr ? std::filesystem::path() : node.origin.source->directory;
-    auto read = readParam(*node.type->param(wire.to), value, directory);
+  const auto directory =
+      node.origin.source == nullptr ? std::filesystem::path() : node.origin.source->directory;
+  for (std::size_t w = 0; w < wired.size(); ++w) {
+    const ParamInfo& info = node.type->params[static_cast<std::size_t>(node.wiredParams[w].to)];
+    auto read = readParam(info, wired[w].value, directory);
     if (!read.ok()) {
       Error error = read.error();
       error.kind = Error::Kind::Failed;
-      error.port = wire.to;
+      error.port = info.name;
       return error;
     }
-    params[wire.to] = std::move(read).value();
+    params[info.name] = std::move(read).value();
   }
   return params;
 }
 
-NodeResult runNode(const Graph::Node& node, const ParamValues& params, const Outputs& inputs,
+NodeResult runNode(const Graph& graph, int i, const ParamValues& params, std::span<const WireValue> inputs,
                    const CancelToken& token, const std::function<void(double)>& onProgress) {
+  const Graph::Node& node = graph.nodes[static_cast<std::size_t>(i)];
   NodeResult result;
-  for (const PortInfo& port : node.type->inputs) {
-    if (!port.required || inputs.contains(port.name)) continue;
-    result.error = failure("nothing came over the wire: the output that it comes from was left empty",
-                           "see the messages of that node", port.name);
-    return result;
-  }
   std::mutex messagesMutex;
   ProgressFilter progress(onProgress);
   Exec exec;
@@ -106,7 +124,8 @@ NodeResult runNode(const Graph::Node& node, const ParamValues& params, const Out
     result.messages.push_back({level, text});
   };
   NodeIo io(exec);
-  for (const auto& [port, input] : inputs) io.setInput(port, input.value);
+  result.error = setInputs(graph, node, inputs, io);
+  if (result.error) return result;
   const Result<void> done = callNode(*node.type, params, io);
   result.written = io.written();
   if (done.ok())

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,15 @@
 
 namespace sherd {
 
-/// The node's parameters with those that are wired replaced by what came over the wire. `wired` is by
-/// parameter.
-Result<ParamValues> finalParams(const Graph::Node& node, const Outputs& wired);
+/// What comes over one wire.
+struct WireValue {
+  Value value;  ///< empty where the output was left empty
+  Digest digest;
+};
+
+/// The node's parameters with those that are wired replaced by what came over the wire. `wired` has one entry
+/// per entry of Node::wiredParams.
+Result<ParamValues> finalParams(const Graph::Node& node, std::span<const WireValue> wired);
 
 struct NodeResult {
   std::optional<Error> error;
@@ -23,9 +30,10 @@ struct NodeResult {
   std::vector<std::string> written;
 };
 
-/// Runs the node. Exceptions and outputs that the type doesn't declare become errors. `onProgress` hears of
-/// each per cent once. Values that are passed through keep their digest.
-NodeResult runNode(const Graph::Node& node, const ParamValues& params, const Outputs& inputs,
+/// Runs the node of a graph. `inputs` has one entry per entry of Node::inputs. Exceptions and outputs that
+/// the type doesn't declare become errors. `onProgress` hears of each per cent once. Values that are passed
+/// through keep their digest.
+NodeResult runNode(const Graph& graph, int node, const ParamValues& params, std::span<const WireValue> inputs,
                    const CancelToken& token, const std::function<void(double)>& onProgress);
 
 }  // namespace sherd

@@ -4,10 +4,12 @@
 #include <unordered_map>
 
 #include "graph/graph.h"
+#include "graph/instances.h"
 #include "graph/loops.h"
 #include "graph/param.h"
 #include "graph/subgraphs.h"
 #include "graph/suggest.h"
+#include "graph/sweep.h"
 
 namespace sherd {
 namespace {
@@ -41,18 +43,23 @@ class Checker {
       : file_(file),
         registry_(registry),
         diagnostics_(diagnostics),
-        variables_(file, overrides.vars, environment, diagnostics) {
+        variables_(file, overrides.vars, environment, diagnostics),
+        own_(file.nodes.size(), 0),
+        swept_(file.nodes.size()) {
     graph_.source = file.source;
     graph_.fps = file.fps;
     for (const NodeEntry& entry : file.nodes) {
-      graph_.index.emplace(entry.name, static_cast<int>(nodeNames_.size()));
+      graph_.index.emplace(entry.name, Graph::Instances{static_cast<int>(nodeNames_.size()), 1});
       nodeNames_.push_back(entry.name);
     }
     for (const GroupEntry& group : file.groups) nodeNames_.push_back(group.name);
     for (const Assignment& assignment : overrides.sets) takeOverride(assignment);
+    sweep_ = readSweep(file, overrides, diagnostics);
+    variables_.sweepOver(sweep_, file.fps);
   }
 
   Graph check() {
+    const std::size_t before = diagnostics_.count();
     for (const NodeEntry& entry : file_.nodes) makeNode(entry);
     checkOverrides();
     for (std::size_t i = 0; i < file_.nodes.size(); ++i) {
@@ -62,6 +69,12 @@ class Checker {
     }
     findTargets();
     reportLoops(graph_, diagnostics_);
+    if (diagnostics_.count() > before) return std::move(graph_);
+    for (Graph::Node& node : graph_.nodes) writeRecipe(node);
+    multiply(
+        graph_, sweep_, own_,
+        [this](int node, const std::vector<int>& at, Graph::Node& copy) { reread(node, at, copy); },
+        diagnostics_);
     return std::move(graph_);
   }
 
@@ -69,6 +82,12 @@ class Checker {
   struct Override {
     Assignment assignment;
     std::string param;
+  };
+  /// A parameter that has another value at another frame or in another wedge.
+  struct SweptParam {
+    std::size_t param = 0;
+    JsonValue value;
+    std::string scope;
   };
 
   void takeOverride(const Assignment& assignment) {
@@ -106,6 +125,7 @@ class Checker {
     Graph::Node& node = graph_.nodes.emplace_back();
     node.name = entry.name;
     node.origin = entry.origin;
+    node.home = file_.source;
     if (entry.type.empty()) return;  // missing or malformed: told by the reader
     const NodeType* type = registry_.find(entry.type);
     if (type == nullptr) {
@@ -145,7 +165,8 @@ class Checker {
       const TypeNames& names = namesOf(*type);
       auto isKnown = [&](const Override& o) {
         if (names.params.contains(o.param)) return true;
-        diagnostics_.add({o.assignment.source, 0, 0}, graph_.nameOf(i, o.param),
+        diagnostics_.add({o.assignment.source, 0, 0},
+                         graph_.nodes[static_cast<std::size_t>(i)].name + '.' + o.param,
                          type->name + " has no parameter " + inQuotes(o.param),
                          suggestion(o.param, names.paramList, "parameters", commandFor(*type)));
         return false;
@@ -179,12 +200,13 @@ class Checker {
                          suggestion(link.port, known, "inputs and parameters", commandFor(*node.type)));
       }
     }
-    for (std::size_t p = 0; p < inputs.size(); ++p) wireInput(i, node.type->inputs[p], inputs[p]);
-    for (std::size_t p = 0; p < params.size(); ++p) wireParam(i, node.type->params[p], params[p]);
+    for (std::size_t p = 0; p < inputs.size(); ++p) wireInput(i, static_cast<int>(p), inputs[p]);
+    for (std::size_t p = 0; p < params.size(); ++p) wireParam(i, static_cast<int>(p), params[p]);
   }
 
-  void wireInput(std::size_t i, const PortInfo& port, const LinkEntry* link) {
+  void wireInput(std::size_t i, int to, const LinkEntry* link) {
     Graph::Node& node = graph_.nodes[i];
+    const PortInfo& port = node.type->inputs[static_cast<std::size_t>(to)];
     const std::string where = node.name + '.' + port.name;
     if (link == nullptr) {
       if (port.required && !file_.nodes[i].inIsUnread)
@@ -196,20 +218,25 @@ class Checker {
     const int from = findOutput(*link, where, output);
     if (output == nullptr) return;
     if (output->type == port.type)
-      node.inputs.push_back({port.name, from, output->name});
+      node.inputs.push_back({to, from, placeOf(*output, from)});
     else
       complainOfType(*link, from, *output, where, port.type);
   }
 
-  void wireParam(std::size_t i, const ParamInfo& param, const LinkEntry* link) {
+  int placeOf(const PortInfo& output, int node) const {
+    return static_cast<int>(&output - graph_.nodes[static_cast<std::size_t>(node)].type->outputs.data());
+  }
+
+  void wireParam(std::size_t i, int to, const LinkEntry* link) {
     Graph::Node& node = graph_.nodes[i];
+    const ParamInfo& param = node.type->params[static_cast<std::size_t>(to)];
     if (link == nullptr || isOverridden(static_cast<int>(i), param.name)) return;  // --set wins over a wire
     const std::string where = node.name + '.' + param.name;
     const PortInfo* output = nullptr;
     const int from = findOutput(*link, where, output);
     if (output == nullptr) return;
     if (acceptsWire(param, output->type)) {
-      node.wiredParams.push_back({param.name, from, output->name});
+      node.wiredParams.push_back({to, from, placeOf(*output, from)});
     } else if (wireType(param.kind).empty()) {
       diagnostics_.add(link->origin, where, "a parameter of " + kindText(param.kind) + " can't be wired",
                        "set it in \"params\"");
@@ -278,12 +305,12 @@ class Checker {
       else if (!given.insert(setting.name).second)
         diagnostics_.add(setting.origin, where, "the parameter is both set and wired", "keep one of the two");
       else
-        readParam(node, node.type->params[found->second], setting.value, entry.scope);
+        readParam(i, found->second, setting.value, entry.scope);
     }
     if (const auto found = overrides_.find(static_cast<int>(i)); found != overrides_.end())
       for (const Override& o : found->second) {
         given.insert(o.param);
-        readParam(node, *node.type->param(o.param), parseTyped(o.assignment.text, o.assignment.source), {});
+        readParam(i, names.params.at(o.param), parseTyped(o.assignment.text, o.assignment.source), {});
       }
     for (const ParamInfo& info : node.type->params) {
       if (!node.params.contains(info.name))
@@ -294,16 +321,54 @@ class Checker {
     }
   }
 
-  void readParam(Graph::Node& node, const ParamInfo& info, const JsonValue& value, const std::string& scope) {
-    const std::string where = node.name + '.' + info.name;
+  void readParam(std::size_t i, std::size_t param, const JsonValue& value, const std::string& scope) {
+    Graph::Node& node = graph_.nodes[i];
+    const ParamInfo& info = node.type->params[param];
     node.origins[info.name] = value.origin;
-    const auto expanded = variables_.expand(value, where, scope);
-    if (!expanded) return;
-    auto read = sherd::readParam(info, expanded->value, expanded->base);
+    const std::uint64_t reads = readParam(node, info, value, scope);
+    if (reads == 0) return;
+    own_[i] |= reads;
+    swept_[i].push_back({param, value, scope});
+  }
+
+  /// Sets the node's parameter, and tells what of the sweep it depends on.
+  std::uint64_t readParam(Graph::Node& node, const ParamInfo& info, const JsonValue& value,
+                          const std::string& scope) {
+    const std::string where = node.name + '.' + info.name;
+    auto expanded = variables_.expand(value, where, scope);
+    if (!expanded) return 0;
+    if (info.kind == ParamKind::OutputFile && expanded->value.kind == JsonValue::Kind::String)
+      putFrame(*expanded, value.origin, where);
+    auto read = sherd::readParam(info, expanded->value, expanded->base->directory);
     if (read.ok())
       node.params[info.name] = std::move(read).value();
     else
       diagnostics_.add(value.origin, where, read.error());
+    if (isPath(info.kind) && expanded->base->typed) node.typedPaths.push_back(info.name);
+    return expanded->reads;
+  }
+
+  /// "name.####.png" is the frame with four digits at least, as in other programs.
+  void putFrame(Expanded& expanded, const Origin& origin, const std::string& where) {
+    std::string& text = expanded.value.text;
+    const std::size_t begin = text.find("##");
+    if (begin == std::string::npos) return;
+    const std::size_t end = std::min(text.find_first_not_of('#', begin), text.size());
+    const auto frame = variables_.frameText(static_cast<int>(end - begin));
+    if (!frame) {
+      diagnostics_.add(origin, where,
+                       inQuotes(text) + " has a place for the frame, and the graph has no frames",
+                       "leave the # out, or say --frames 1001-1040");
+      return;
+    }
+    text.replace(begin, end - begin, *frame);
+    expanded.reads |= 1;
+  }
+
+  void reread(int node, const std::vector<int>& at, Graph::Node& copy) {
+    variables_.moveTo(at);
+    for (const SweptParam& swept : swept_[static_cast<std::size_t>(node)])
+      readParam(copy, copy.type->params[swept.param], swept.value, swept.scope);
   }
 
   void findTargets() {
@@ -330,6 +395,9 @@ class Checker {
   std::size_t comparisonsLeft_ = 200000;
   std::unordered_map<const NodeType*, std::unique_ptr<TypeNames>> typeNames_;
   std::map<int, std::vector<Override>> overrides_;
+  Sweep sweep_;
+  std::vector<std::uint64_t> own_;              ///< per node: what of the sweep its own parameters depend on
+  std::vector<std::vector<SweptParam>> swept_;  ///< per node: those parameters
 };
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace sherd {
 struct Source {
   std::string name;  ///< as shown: the file as the user named it, or the option as it was typed
   std::filesystem::path directory;  ///< absolute; relative paths in this source start here
+  bool typed = false;               ///< by the user, on the command line
 };
 using SourcePtr = std::shared_ptr<const Source>;
 

@@ -1,11 +1,14 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <map>
+#include <set>
 #include <system_error>
 
 #include "graph/graph.h"
+#include "graph/param.h"
 #include "graph/suggest.h"
 
 namespace sherd {
@@ -82,40 +85,123 @@ Result<void> checkOutputFile(const fs::path& path) {
   return checkOutputDirectory(path.parent_path());
 }
 
-/// Nodes of one type that own one directory would delete each other's files; a file has one owner in any
-/// case.
-std::string ownerKey(const Graph::Node& node, const ParamInfo& info, const std::string& path) {
-  if (info.kind == ParamKind::OutputFile) return "file " + path;
-  return info.kind == ParamKind::OutputDirectory ? "directory " + node.type->name + ' ' + path
-                                                 : std::string();
+/// `path` with what is there of it freed from links, so that no link leads out of a folder unseen.
+fs::path resolved(const fs::path& path) {
+  std::error_code problem;
+  fs::path result = fs::weakly_canonical(path, problem);
+  return problem ? path.lexically_normal() : result;
 }
+
+bool isInside(const fs::path& path, const fs::path& folder) {
+  const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return end == folder.end() || (std::next(end) == folder.end() && end->empty());
+}
+
+class FileChecker {
+ public:
+  FileChecker(const Graph& graph, const std::vector<std::string>& allowed, Diagnostics& diagnostics)
+      : graph_(graph), diagnostics_(diagnostics) {
+    for (const std::string& folder : allowed) allowed_.push_back(resolved(folder));
+  }
+
+  void check(int i) {
+    const Graph::Node& node = graph_.nodes[static_cast<std::size_t>(i)];
+    if (node.type == nullptr) return;
+    for (std::size_t p = 0; p < node.type->params.size(); ++p) {
+      const ParamInfo& info = node.type->params[p];
+      if (!isPath(info.kind)) continue;
+      const bool wired = std::any_of(node.wiredParams.begin(), node.wiredParams.end(),
+                                     [&](const Graph::Wire& wire) { return wire.to == static_cast<int>(p); });
+      const auto* text = wired ? nullptr : std::get_if<std::string>(&node.params.at(info.name));
+      if (text == nullptr || text->empty()) continue;
+      checkPath(i, info, *text);
+      if (info.kind == ParamKind::InputFile) continue;
+      checkPlace(i, info, *text);
+      checkOwner(i, info, *text);
+    }
+  }
+
+ private:
+  void complain(int i, const ParamInfo& info, Error error) {
+    diagnostics_.add(graph_.originOf(i, info.name), graph_.nameOf(i, info.name), std::move(error));
+  }
+
+  /// Each path of each kind once: a thousand frames that read one file look at it once.
+  void checkPath(int i, const ParamInfo& info, const std::string& path) {
+    if (!seen_.emplace(info.kind, path).second) return;
+    Result<void> checked;
+    if (info.kind == ParamKind::InputFile) checked = checkInputFile(path);
+    if (info.kind == ParamKind::OutputFile) checked = checkOutputFile(path);
+    if (info.kind == ParamKind::OutputDirectory) checked = checkOutputDirectory(path);
+    if (!checked.ok()) complain(i, info, checked.error());
+  }
+
+  /// Outputs stay in the folder of the graph that is run, wherever a subgraph's file lies, unless the user
+  /// says otherwise: a graph from elsewhere can't write where it likes.
+  void checkPlace(int i, const ParamInfo& info, const std::string& path) {
+    const Graph::Node& node = graph_.nodes[static_cast<std::size_t>(i)];
+    if (std::find(node.typedPaths.begin(), node.typedPaths.end(), info.name) != node.typedPaths.end()) return;
+    const fs::path folder =
+        info.kind == ParamKind::OutputFile ? fs::path(path).parent_path() : fs::path(path);
+    const auto [found, isNew] = mayWrite_.emplace(std::pair(folder, node.home->directory), false);
+    if (isNew) {
+      const fs::path real = resolved(folder);
+      found->second = isInside(real, resolved(node.home->directory)) ||
+                      std::any_of(allowed_.begin(), allowed_.end(),
+                                  [&](const fs::path& allowed) { return isInside(real, allowed); });
+      if (!found->second)
+        complain(i, info,
+                 wrong(pathInQuotes(path) + " is outside of the graph's folder",
+                       "write below it, name the place on the command line (--var, --set), or allow it with "
+                       "--allow-write " +
+                           folder.string()));
+    }
+  }
+
+  /// A file has one owner; and nodes of one type that own one directory would delete each other's files.
+  void checkOwner(int i, const ParamInfo& info, const std::string& path) {
+    const Graph::Node& node = graph_.nodes[static_cast<std::size_t>(i)];
+    const std::string key =
+        info.kind == ParamKind::OutputFile ? "file " + path : "directory " + node.type->name + ' ' + path;
+    const auto [owner, isFirst] = owners_.emplace(key, std::pair(i, info.name));
+    if (isFirst) return;
+    const auto& [other, port] = owner->second;
+    if (graph_.nodes[static_cast<std::size_t>(other)].name != node.name) {
+      complain(i, info,
+               wrong(graph_.nameOf(other, port) + " writes to the same path", "give each a path of its own"));
+      return;
+    }
+    if (!clashes_.insert(node.name + '.' + info.name).second) return;
+    const Graph::Context& one =
+        graph_.contexts[static_cast<std::size_t>(graph_.nodes[static_cast<std::size_t>(other)].context)];
+    const Graph::Context& two = graph_.contexts[static_cast<std::size_t>(node.context)];
+    complain(i, info,
+             wrong(one.label + " and " + two.label + " write to the same path",
+                   "put " + distinction(one, two) + " into it"));
+  }
+
+  static std::string distinction(const Graph::Context& one, const Graph::Context& two) {
+    if (one.frame != two.frame) return "${frame:04}";
+    for (std::size_t k = 0; k < one.values.size() && k < two.values.size(); ++k)
+      if (one.values[k] != two.values[k]) return "${" + one.values[k].first + "}";
+    return "what tells them apart";
+  }
+
+  const Graph& graph_;
+  Diagnostics& diagnostics_;
+  std::vector<fs::path> allowed_;
+  std::set<std::pair<ParamKind, std::string>> seen_;
+  std::map<std::pair<fs::path, fs::path>, bool> mayWrite_;  ///< by folder and home
+  std::map<std::string, std::pair<int, std::string>> owners_;
+  std::set<std::string> clashes_;
+};
 
 }  // namespace
 
-void checkFiles(const Graph& graph, const std::vector<int>& nodes, Diagnostics& diagnostics) {
-  std::map<std::string, std::string> owners;
-  for (const int i : nodes) {
-    const Graph::Node& node = graph.nodes[static_cast<std::size_t>(i)];
-    if (node.type == nullptr) continue;
-    for (const ParamInfo& info : node.type->params) {
-      bool wired = false;
-      for (const Graph::Wire& wire : node.wiredParams) wired = wired || wire.to == info.name;
-      const auto* text = wired ? nullptr : std::get_if<std::string>(&node.params.at(info.name));
-      if (text == nullptr || text->empty()) continue;
-      Result<void> checked;
-      if (info.kind == ParamKind::InputFile) checked = checkInputFile(*text);
-      if (info.kind == ParamKind::OutputFile) checked = checkOutputFile(*text);
-      if (info.kind == ParamKind::OutputDirectory) checked = checkOutputDirectory(*text);
-      const std::string where = graph.nameOf(i, info.name);
-      if (!checked.ok()) diagnostics.add(graph.originOf(i, info.name), where, checked.error());
-      const std::string key = ownerKey(node, info, *text);
-      if (key.empty()) continue;
-      const auto [owner, isFirst] = owners.emplace(key, where);
-      if (!isFirst)
-        diagnostics.add(graph.originOf(i, info.name), where, owner->second + " writes to the same path",
-                        "give each a path of its own");
-    }
-  }
+void checkFiles(const Graph& graph, const std::vector<int>& nodes, const std::vector<std::string>& allowed,
+                Diagnostics& diagnostics) {
+  FileChecker checker(graph, allowed, diagnostics);
+  for (const int i : nodes) checker.check(i);
 }
 
 }  // namespace sherd

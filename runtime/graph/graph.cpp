@@ -8,7 +8,7 @@ namespace sherd {
 
 int Graph::find(const std::string& name) const {
   const auto found = index.find(name);
-  return found == index.end() ? -1 : found->second;
+  return found == index.end() ? -1 : found->second.first;
 }
 
 Origin Graph::originOf(int node, const std::string& port) const {
@@ -22,11 +22,40 @@ std::string Graph::nameOf(int node, const std::string& port) const {
   return port.empty() ? name : name + '.' + port;
 }
 
+std::string Graph::labelOf(int node) const {
+  const Node& at = nodes[static_cast<std::size_t>(node)];
+  const std::string& label = contexts[static_cast<std::size_t>(at.context)].label;
+  return label.empty() ? at.name : at.name + " (" + label + ')';
+}
+
+void append(Graph& graph, const Graph& other, const std::string& shot) {
+  if (graph.nodes.empty() && graph.shots == std::vector<std::string>{""}) graph.shots.clear();
+  const int nodes = static_cast<int>(graph.nodes.size()), contexts = static_cast<int>(graph.contexts.size());
+  graph.contexts.insert(graph.contexts.end(), other.contexts.begin(), other.contexts.end());
+  for (Graph::Node node : other.nodes) {
+    node.context = node.context == 0 ? 0 : node.context + contexts;
+    node.shot = static_cast<int>(graph.shots.size());
+    for (auto* wires : {&node.inputs, &node.wiredParams})
+      for (Graph::Wire& wire : *wires) wire.node += nodes;
+    graph.nodes.push_back(std::move(node));
+  }
+  graph.shots.push_back(shot);
+}
+
 namespace {
 
 Error unknown(const std::string& what, const std::string& name, const std::vector<std::string>& known,
               const std::string& kind) {
   return Error{what + ' ' + inQuotes(name), suggestion(name, known, kind), {}, Error::Kind::Input};
+}
+
+/// All frames and wedges of a node, or of those whose outputs are a subgraph's.
+std::vector<int> nodesNamed(const Graph& graph, const std::string& name) {
+  if (const auto group = graph.groups.find(name); group != graph.groups.end()) return group->second;
+  std::vector<int> nodes;
+  if (const auto found = graph.index.find(name); found != graph.index.end())
+    for (int k = 0; k < found->second.count; ++k) nodes.push_back(found->second.first + k);
+  return nodes;
 }
 
 std::vector<int> defaultNodes(const Graph& graph) {
@@ -52,15 +81,12 @@ std::vector<int> defaultNodes(const Graph& graph) {
 Result<std::vector<int>> wantedNodes(const Graph& graph, const std::string& target, const std::string& to) {
   std::vector<int> wanted;
   if (!to.empty()) {
+    wanted = nodesNamed(graph, to);
     std::vector<std::string> names;
-    for (const Graph::Node& node : graph.nodes) names.push_back(node.name);
+    for (const auto& [name, instances] : graph.index) names.push_back(name);
     for (const auto& [name, nodes] : graph.groups) names.push_back(name);
-    if (const auto group = graph.groups.find(to); group != graph.groups.end())
-      wanted = group->second;
-    else if (const int node = graph.find(to); node >= 0)
-      wanted = {node};
-    else
-      return unknown("the graph has no node", to, names, "nodes");
+    std::sort(names.begin(), names.end());
+    if (wanted.empty()) return unknown("the graph has no node", to, names, "nodes");
   } else if (!target.empty()) {
     std::vector<std::string> names;
     for (const Graph::Target& known : graph.targets) {

@@ -101,7 +101,7 @@ struct ExpectedType {
 struct GraphFile {
   SourcePtr source;
   double fps = 24;
-  std::optional<Setting> frames, wedge;  ///< known keys whose evaluation is not there yet
+  std::optional<Setting> frames, wedge;  ///< a text or an integer; an object
   std::vector<Setting> vars;
   std::vector<TargetEntry> targets;
   std::vector<NodeEntry> nodes;

@@ -43,13 +43,21 @@ void GraphReader::readFile(const JsonValue& root, GraphFile& file) {
     readNodes(*nodes, "", file.nodes);
   else
     diagnostics_.add(root.origin, "", "the key \"nodes\" is missing", "a graph has nodes");
-  keep(root, "frames", Kind::String, file.frames);
+  keepFrames(root, file.frames);
   keep(root, "wedge", Kind::Object, file.wedge);
 }
 
 void GraphReader::keep(const JsonValue& root, const char* key, Kind kind, std::optional<Setting>& setting) {
   const JsonValue* value = root.find(key);
   if (value != nullptr && expect(*value, kind, key)) setting = Setting{key, value->origin, *value};
+}
+
+/// A range is a text; a single frame may be a number.
+void GraphReader::keepFrames(const JsonValue& root, std::optional<Setting>& setting) {
+  const JsonValue* value = root.find("frames");
+  if (value == nullptr) return;
+  if (value->kind == Kind::Integer || expect(*value, Kind::String, "frames"))
+    setting = Setting{"frames", value->origin, *value};
 }
 
 void GraphReader::readFormat(const JsonValue& root) {
@@ -76,7 +84,7 @@ void GraphReader::readVars(const JsonValue& vars, const std::string& inside, std
     const std::string where = inside + "vars." + member.key;
     if (!isName(member.key))
       diagnostics_.add(member.origin, where, "this is no name for a variable", kNameRule);
-    else if (member.key == "frame" || member.key == "ASSETS")
+    else if (member.key == "frame" || member.key == "time" || member.key == "ASSETS")
       diagnostics_.add(member.origin, where, "this variable is set by the program", "choose another name");
     else if (member.value.kind == Kind::Null || member.value.kind == Kind::Object)
       diagnostics_.add(member.value.origin, where, "this is " + kindName(member.value.kind),

@@ -26,6 +26,7 @@ class GraphReader {
   void readFormat(const JsonValue& root);
   void readFps(const JsonValue& fps, GraphFile& file);
   void keep(const JsonValue& root, const char* key, JsonValue::Kind kind, std::optional<Setting>& setting);
+  void keepFrames(const JsonValue& root, std::optional<Setting>& setting);
   void readVars(const JsonValue& vars, const std::string& inside, std::vector<Setting>& list);
   void readTargets(const JsonValue& targets, GraphFile& file);
   void readNodes(const JsonValue& nodes, const std::string& inside, std::vector<NodeEntry>& list);

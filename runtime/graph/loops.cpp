@@ -25,6 +25,12 @@ const Graph::Wire* wireAt(const Graph::Node& node, std::size_t i) {
   return i < node.wiredParams.size() ? &node.wiredParams[i] : nullptr;
 }
 
+std::string portName(const Graph::Node& node, const Graph::Wire* wire) {
+  const bool isInput = wire >= node.inputs.data() && wire < node.inputs.data() + node.inputs.size();
+  const auto place = static_cast<std::size_t>(wire->to);
+  return isInput ? node.type->inputs[place].name : node.type->params[place].name;
+}
+
 }  // namespace
 
 void reportLoops(const Graph& graph, Diagnostics& diagnostics) {
@@ -53,7 +59,8 @@ void reportLoops(const Graph& graph, Diagnostics& diagnostics) {
                                   [&](const auto& step) { return step.first == wire->node; });
         for (auto it = first; it != path.end(); ++it) loop.push_back(it->first);
         std::reverse(loop.begin(), loop.end());  // the search goes against the wires
-        diagnostics.add(graph.originOf(at, wire->to), graph.nameOf(at, wire->to),
+        const std::string port = portName(graph.nodes[static_cast<std::size_t>(at)], wire);
+        diagnostics.add(graph.originOf(at, port), graph.nameOf(at, port),
                         "the wires form a loop: " + loopText(graph, loop), "unplug one of them");
       }
     }

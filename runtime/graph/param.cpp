@@ -8,10 +8,6 @@
 namespace sherd {
 namespace {
 
-bool isPath(ParamKind kind) {
-  return kind == ParamKind::InputFile || kind == ParamKind::OutputFile || kind == ParamKind::OutputDirectory;
-}
-
 Error wrong(std::string what, std::string remedy) {
   return Error{std::move(what), std::move(remedy), {}, Error::Kind::Input};
 }
@@ -116,6 +112,10 @@ Result<ParamValue> readParam(const ParamInfo& info, const Value& value, const st
       if (const auto text = value.as<std::string>()) return fromText(info, *text, base);
   }
   return wrongKind(info, value.empty() ? "wired to an output that was left empty" : value.type().name);
+}
+
+bool isPath(ParamKind kind) {
+  return kind == ParamKind::InputFile || kind == ParamKind::OutputFile || kind == ParamKind::OutputDirectory;
 }
 
 ParamValue defaultParam(const ParamInfo& info, const std::filesystem::path& base) {

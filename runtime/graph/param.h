@@ -26,6 +26,9 @@ bool acceptsWire(const ParamInfo& info, const std::string& valueType);
 /// The type of output that may be wired to the parameter; empty where none may.
 std::string wireType(ParamKind kind);
 
+/// Whether the parameter is a path.
+bool isPath(ParamKind kind);
+
 /// Feeds kind and value into a key.
 void hashParam(Hasher& hasher, const ParamValue& value);
 

@@ -82,18 +82,21 @@ std::map<std::string, std::vector<int>> groupsOf(const GraphFile& file, const Gr
   std::map<std::string, std::vector<int>> groups;
   for (const GroupEntry& group : file.groups)
     for (const std::string& node : nodesOfGroup(file, group))
-      if (const int i = graph.find(node); i >= 0) groups[group.name].push_back(i);
+      if (const auto found = graph.index.find(node); found != graph.index.end())
+        for (int k = 0; k < found->second.count; ++k) groups[group.name].push_back(found->second.first + k);
   return groups;
 }
 
 void checkSubgraphs(const GraphFile& file, const Graph& graph, const Registry& registry,
                     const Environment& environment, Diagnostics& diagnostics) {
   checkExpectedTypes(file, graph, registry, diagnostics);
-  for (const GraphFile& unused : file.unused) checkGraph(unused, registry, {}, environment, diagnostics);
+  // It may read the frame, which there is once it is used.
+  for (const GraphFile& unused : file.unused)
+    checkGraph(unused, registry, {.vars = {}, .sets = {}, .frames = "1"}, environment, diagnostics);
 }
 
 Overrides withSubgraphOverrides(const GraphFile& file, const Overrides& overrides, Diagnostics& diagnostics) {
-  Overrides result{overrides.vars, {}};
+  Overrides result{overrides.vars, {}, overrides.frames};
   for (const Assignment& assignment : overrides.sets) {
     const std::size_t dot = assignment.name.find('.');
     const GroupEntry* group = findGroup(file, assignment.name.substr(0, dot));

@@ -25,7 +25,7 @@ Result<Assignment> parseAssignment(const std::string& option, const std::string&
                  option == "--set" ? "write --set node.param=value" : "write " + option + " name=value",
                  {},
                  Error::Kind::Input};
-  const Source source{option + ' ' + typed, environment.currentDirectory};
+  const Source source{option + ' ' + typed, environment.currentDirectory, true};
   return Assignment{typed.substr(0, equals), typed.substr(equals + 1),
                     std::make_shared<const Source>(source)};
 }
@@ -47,7 +47,71 @@ Variables::Variables(const GraphFile& graph, const std::vector<Assignment>& over
     else
       found->second.setting = {assignment.name, origin, parseTyped(assignment.text, assignment.source)};
   }
+}
+
+void Variables::sweepOver(const Sweep& sweep, double fps) {
+  sweep_ = sweep;
+  fps_ = fps;
+  at_.clear();
+  moveTo(std::vector<int>(sweep.wedge.size() + 1, 0));
   for (auto& [name, variable] : variables_) resolve(variable);
+}
+
+void Variables::moveTo(const std::vector<int>& at) {
+  if (at == at_) return;
+  at_ = at;
+  ofFrame_.clear();
+  for (std::size_t k = 0; k < sweep_.wedge.size(); ++k) {
+    Variable& variable = variables_.at(sweep_.wedge[k].name);
+    variable.setting.value = sweep_.wedge[k].values[static_cast<std::size_t>(at[k + 1])];
+    variable.wedge = k + 1;
+    if (variable.state == State::Resolved) variable.state = State::Untouched;
+  }
+  for (auto& [name, variable] : variables_)
+    if (variable.state == State::Resolved && variable.expanded.reads != 0) variable.state = State::Untouched;
+}
+
+std::optional<std::string> Variables::frameText(int digits) const {
+  if (sweep_.frames.empty()) return std::nullopt;
+  const std::int64_t frame = sweep_.frames[static_cast<std::size_t>(at_[0])];
+  std::string text = std::to_string(frame < 0 ? -frame : frame);
+  if (text.size() < static_cast<std::size_t>(digits))
+    text.insert(0, static_cast<std::size_t>(digits) - text.size(), '0');
+  return frame < 0 ? '-' + text : text;
+}
+
+/// ${frame}, ${frame:04} and ${time}: seconds since the first frame.
+const Expanded* Variables::fromFrame(const std::string& name, const std::string& reference,
+                                     const Origin& origin, const std::string& where) {
+  if (sweep_.frames.empty()) {
+    diagnostics_.add(origin, where, reference + " stands in a graph without frames",
+                     "add \"frames\": \"1001-1040\" to the graph, or say --frames 1001");
+    return nullptr;
+  }
+  if (const auto known = ofFrame_.find(name); known != ofFrame_.end()) return &known->second;
+  Expanded made{{}, nullptr, 1};
+  made.value.origin = origin;
+  const std::int64_t frame = sweep_.frames[static_cast<std::size_t>(at_[0])];
+  if (name == "frame") {
+    made.value.kind = JsonValue::Kind::Integer;
+    made.value.integer = frame;
+    made.value.number = static_cast<double>(frame);
+  } else if (name == "time") {
+    made.value.kind = JsonValue::Kind::Number;
+    made.value.number = static_cast<double>(frame - sweep_.frames.front()) / fps_;
+  } else {
+    const std::string format = name.substr(std::string("frame:").size());
+    const bool good = !format.empty() && format.size() <= 2 &&
+                      std::all_of(format.begin(), format.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (!good) {
+      diagnostics_.add(origin, where, reference + " has a format that is unknown",
+                       "write \"${frame:04}\" for at least four digits");
+      return nullptr;
+    }
+    made.value.kind = JsonValue::Kind::String;
+    made.value.text = *frameText(std::stoi(format));
+  }
+  return &ofFrame_.emplace(name, std::move(made)).first->second;
 }
 
 const Expanded* Variables::resolve(Variable& variable) {
@@ -77,6 +141,7 @@ const Expanded* Variables::resolve(Variable& variable) {
     return nullptr;
   }
   variable.expanded = std::move(*expanded);
+  if (variable.wedge > 0) variable.expanded.reads |= std::uint64_t{1} << variable.wedge;
   variable.state = State::Resolved;
   return &variable.expanded;
 }
@@ -84,11 +149,12 @@ const Expanded* Variables::resolve(Variable& variable) {
 std::optional<Expanded> Variables::expand(const JsonValue& value, const std::string& where,
                                           const std::string& scope) {
   if (value.kind == JsonValue::Kind::String) return expandText(value, where, scope);
-  Expanded result{value, value.origin.source->directory};
+  Expanded result{value, value.origin.source};
   for (JsonValue& item : result.value.items) {
     auto expanded = expand(item, where, scope);
     if (!expanded) return std::nullopt;
     item = std::move(expanded->value);
+    result.reads |= expanded->reads;
   }
   return result;
 }
@@ -98,7 +164,7 @@ const Expanded* Variables::fromOutside(const std::string& name) {
   if (const auto known = outside_.find(name); known != outside_.end()) return &known->second;
   auto keep = [&](const std::string& text, const std::filesystem::path& directory) {
     const auto source = std::make_shared<const Source>(Source{"${" + name + "}", directory});
-    return &outside_.emplace(name, Expanded{parseTyped(text, source), directory}).first->second;
+    return &outside_.emplace(name, Expanded{parseTyped(text, source), source}).first->second;
   };
   if (name == "ASSETS") {
     if (environment_.assets.empty()) return nullptr;
@@ -113,11 +179,7 @@ const Expanded* Variables::lookUp(const std::string& name, const Origin& origin,
                                   const std::string& scope) {
   const std::string base = name.substr(0, name.find(':'));
   const std::string reference = inQuotes("${" + name + "}");
-  if (base == "frame") {
-    diagnostics_.add(origin, where, reference + " is not supported yet",
-                     "this version evaluates one moment only");
-    return nullptr;
-  }
+  if (base == "frame" || name == "time") return fromFrame(name, reference, origin, where);
   if (base != name) {
     diagnostics_.add(origin, where, reference + " has a format", "only ${frame} takes one");
     return nullptr;
@@ -145,7 +207,7 @@ std::string Variables::remedyFor(const std::string& name, const std::string& sco
            " to the subgraph's \"vars\" and pass it with \"params\": { " + inQuotes(name) + ": " +
            inQuotes("${" + name + "}") + " }";
   if (diagnostics_.count() >= kMostSuggestions) return "define it in \"vars\"";
-  std::vector<std::string> names{"ASSETS"};
+  std::vector<std::string> names{"ASSETS", "frame", "time"};
   for (const auto& [known, variable] : variables_)
     if (known.starts_with(scope) && known.find('/', scope.size()) == std::string::npos)
       names.push_back(known.substr(scope.size()));
@@ -172,7 +234,7 @@ bool Variables::append(Expanded& result, const std::string& name, const JsonValu
 std::optional<Expanded> Variables::expandText(const JsonValue& value, const std::string& where,
                                               const std::string& scope) {
   const std::string& text = value.text;
-  Expanded result{value, value.origin.source->directory};
+  Expanded result{value, value.origin.source};
   if (text.find("${") == std::string::npos) return result;
   result.value.text.clear();
   result.value.typed.reset();
@@ -194,7 +256,8 @@ std::optional<Expanded> Variables::expandText(const JsonValue& value, const std:
     const std::string name = text.substr(at + 2, end - at - 2);
     const Expanded* found = lookUp(name, value.origin, where, scope);
     if (found == nullptr) return std::nullopt;
-    if (at == 0) result.base = found->base;
+    if (at == 0 && found->base != nullptr) result.base = found->base;
+    result.reads |= found->reads;
     if (at == 0 && end + 1 == text.size()) {
       result.value = found->value;
       result.value.origin = value.origin;

@@ -12,6 +12,7 @@
 
 #include "base/parallel.h"
 #include "eval/key.h"
+#include "graph/instances.h"
 #include "runtime/made_up.h"
 
 namespace sherd::test {
@@ -101,7 +102,7 @@ TEST_F(Evaluator, FilesCountByContent) {
   directory.write("t.txt", "two");
   const EvalReport report = evaluateNodes(graph, {"r"});
   EXPECT_EQ(report.count(NodeState::Run), 1);
-  EXPECT_EQ(*report.outputs.at(0).at("text").value.as<std::string>(), "two");
+  EXPECT_EQ(*report.outputs.at(0).at(0).value.as<std::string>(), "two");
   fs::remove(directory.path() / "t.txt");
   const EvalReport gone = evaluateNodes(graph, {"r"});
   EXPECT_EQ(gone.count(NodeState::Failed), 1);
@@ -130,17 +131,22 @@ TEST_F(Evaluator, SameKeysComputeOnce) {
   }
 }
 
-TEST_F(Evaluator, ExportersAlwaysRun) {
+TEST_F(Evaluator, ExportersRunUntilTheirFilesAreThere) {
   const TemporaryDirectory directory;
+  const std::string file = (directory.path() / "out/value.txt").string();
   const Graph graph = graphOf(R"("c": {"type": "Constant@1", "params": {"value": 5}},
       "s": {"type": "Sink@1", "in": {"value": "c"}, "params": {"directory": "out"}})",
                               registry, directory.path());
-  for (int round = 1; round <= 2; ++round) {
-    const EvalReport report = evaluateNodes(graph, {"s"});
-    EXPECT_EQ(counters->sinks, round);
-    EXPECT_EQ(report.nodes.back().written,
-              std::vector<std::string>{(directory.path() / "out/value.txt").string()});
-  }
+  EXPECT_EQ(stateOf(graph, evaluateNodes(graph, {"s"}), "s"), "run");
+  const EvalReport again = evaluateNodes(graph, {"s"});
+  EXPECT_EQ(stateOf(graph, again, "s"), "hit");
+  EXPECT_EQ(again.nodes.back().written, std::vector<std::string>{file});
+  fs::remove(file);
+  EXPECT_EQ(stateOf(graph, evaluateNodes(graph, {"s"}), "s"), "run");
+  directory.write("out/value.txt", "altered");
+  EXPECT_EQ(stateOf(graph, evaluateNodes(graph, {"s"}), "s"), "run");
+  EXPECT_EQ(stateOf(graph, evaluateNodes(graph, {"s"}), "s"), "hit");
+  EXPECT_EQ(counters->sinks, 3);
   EXPECT_EQ(counters->constants, 1);
 }
 
@@ -163,7 +169,7 @@ TEST_F(Evaluator, SameResultForAnyThreads) {
     const EvalReport report = evaluate(graph, nodesOf(graph, {"end", "p3"}), fresh, token);
     EXPECT_TRUE(report.ok());
     sums.insert(numberAt(graph, report, "end", "sum"));
-    digests.insert(report.outputs.at(graph.find("p3")).at("blob").digest);
+    digests.insert(report.outputs.at(graph.find("p3")).at(0).digest);
   }
   EXPECT_EQ(sums.size(), 1u);
   EXPECT_EQ(digests.size(), 1u);
@@ -373,41 +379,52 @@ TEST_F(Evaluator, TakesManyInputs) {
 }
 
 TEST(EvalCache, IsBoundedAndDropsTheLeastRecentlyUsed) {
-  auto result = [](std::size_t numbers) {
+  auto result = [](std::uint64_t key, std::size_t numbers) {
     CachedResult made;
-    made.outputs["blob"] = {Value::of<Blob>(std::make_shared<const Blob>(Blob{std::vector<double>(numbers)})),
-                            {}};
+    made.record.key = {0, key};
+    made.outputs = {{Value::of<Blob>(std::make_shared<const Blob>(Blob{std::vector<double>(numbers)})), {}}};
     return made;
   };
   Cache cache(10000);
-  cache.insert({0, 1}, result(400));
-  cache.insert({0, 2}, result(400));
+  cache.insert(result(1, 400));
+  cache.insert(result(2, 400));
   EXPECT_TRUE(cache.find({0, 1}));
-  cache.insert({0, 3}, result(400));  // 2 was used longest ago
+  cache.insert(result(3, 400));  // 2 was used longest ago
   EXPECT_TRUE(cache.find({0, 1}));
   EXPECT_FALSE(cache.find({0, 2}));
   EXPECT_TRUE(cache.find({0, 3}));
-  cache.insert({0, 4}, result(4000));  // larger than all
+  cache.insert(result(4, 4000));  // larger than all
   EXPECT_FALSE(cache.find({0, 4}));
   EXPECT_EQ(cache.size(), 2u);
   EXPECT_LE(cache.bytes(), 10000u);
 }
 
 TEST(EvalKey, DependsOnAllThatMatters) {
-  FileDigests files;
   Registry registry = madeUpNodes();
+  Graph::Node node;
   NodeType type = *registry.find("Add");
-  const ParamValues params{{"offset", 1.0}};
-  const Outputs inputs{{"a", {Value(), Digest{1, 2}}}};
-  const Digest key = *resultKey(type, params, inputs, files);
-  EXPECT_EQ(*resultKey(type, params, inputs, files), key);
-  EXPECT_NE(*resultKey(type, {{"offset", 2.0}}, inputs, files), key);
-  EXPECT_NE(*resultKey(type, params, {{"a", {Value(), Digest{1, 3}}}}, files), key);
-  EXPECT_NE(*resultKey(type, params, {{"b", {Value(), Digest{1, 2}}}}, files), key);
-  EXPECT_EQ(*resultKey(type, {{"offset", 0.0}}, inputs, files),
-            *resultKey(type, {{"offset", -0.0}}, inputs, files));
+  node.type = &type;
+  const auto recipe = [&](double offset) {
+    node.params = {{"offset", offset}};
+    writeRecipe(node);
+    return node.recipe;
+  };
+  const Digest one = recipe(1);
+  EXPECT_EQ(recipe(1), one);
+  EXPECT_NE(recipe(2), one);
+  EXPECT_EQ(recipe(0.0), recipe(-0.0));
   type.implementation = 2;
-  EXPECT_NE(*resultKey(type, params, inputs, files), key);
+  EXPECT_NE(recipe(1), one);
+  const std::vector<KeyInput> inputs{{0, {}, {1, 2}}};
+  const Digest key = resultKey(one, inputs);
+  EXPECT_EQ(resultKey(one, inputs), key);
+  EXPECT_NE(resultKey(recipe(3), inputs), key);
+  for (const KeyInput& other :
+       std::vector<KeyInput>{{1, {}, {1, 2}}, {0, {}, {1, 3}}, {0, {5, 5}, {1, 2}}, {kKeyParam, {}, {1, 2}}})
+    EXPECT_NE(resultKey(one, std::vector<KeyInput>{other}), key);
+  EXPECT_NE(resultKey(one, {}), key);
+  const std::vector<KeyInput> many(1000, {0, {}, {1, 2}});
+  EXPECT_NE(resultKey(one, many), resultKey(recipe(3), many));
 }
 
 }  // namespace

@@ -207,9 +207,8 @@ TEST(GraphCheck, TellsOfTheFileAsAWhole) {
             std::vector<std::string>{"test.json:1:15: unknown key \"nods\"; did you mean \"nodes\"?"});
   EXPECT_EQ(errorsIn("{\"format\": 1, \"fps\": 0, " + nodes + "}"),
             std::vector<std::string>{"test.json:1:22: fps: this is 0; it would have to be a number above 0"});
-  EXPECT_EQ(
-      errorsIn("{\"format\": 1, \"frames\": 3, " + nodes + "}"),
-      std::vector<std::string>{"test.json:1:25: frames: this is an integer; it would have to be a string"});
+  EXPECT_EQ(errorsIn("{\"format\": 1, \"frames\": [3], " + nodes + "}"),
+            std::vector<std::string>{"test.json:1:25: frames: this is a list; it would have to be a string"});
   EXPECT_EQ(errorsIn("{\"format\": 1, \"targets\": {\"t\": [\"d\"]}, " + nodes + "}"),
             std::vector<std::string>{
                 "test.json:1:33: targets.t: there is no node \"d\"; the known nodes are \"c\""});
@@ -219,10 +218,12 @@ TEST(GraphCheck, TellsOfTheFileAsAWhole) {
   EXPECT_EQ(errorsIn("{\"format\": 1, \"vars\": {\"a b\": 1}, " + nodes + "}").size(), 1u);
   EXPECT_EQ(errorsIn("{\"format\": 1, \"vars\": {\"a\": null}, " + nodes + "}").size(), 1u);
   EXPECT_EQ(errorsIn("{\"format\": 1, \"nodes\": {\"a.b\": {\"type\": \"Constant@1\"}}}").size(), 1u);
-  EXPECT_TRUE(errorsIn("{\"format\": 1, \"fps\": 25, \"frames\": \"1-5\", \"wedge\": {\"a\": [1]}, "
-                       "\"targets\": {\"t\": \"c\", \"u\": []}, " +
-                       nodes + "}")
-                  .empty());
+  EXPECT_TRUE(
+      errorsIn(
+          "{\"format\": 1, \"fps\": 25, \"frames\": \"1-5\", \"vars\": {\"a\": 1}, \"wedge\": {\"a\": [1]}, "
+          "\"targets\": {\"t\": \"c\", \"u\": []}, " +
+          nodes + "}")
+          .empty());
 }
 
 TEST(GraphCheck, TellsAllErrorsAtOnceInTheOrderOfTheFile) {
@@ -311,7 +312,7 @@ TEST(GraphCheck, LooksForFiles) {
     const Graph graph = graphOf(nodes, registry, directory.path());
     std::vector<int> all(graph.nodes.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-    checkFiles(graph, all, diagnostics);
+    checkFiles(graph, all, {}, diagnostics);
     std::vector<std::string> errors;
     for (const Diagnostic& d : diagnostics.sorted()) errors.push_back(d.text());
     return errors;
@@ -353,7 +354,7 @@ TEST(GraphCheck, TellsOfOutputsWithoutPermission) {
   const Graph graph = graphOf(
       R"("c": {"type": "Constant@1"}, "s": {"type": "Sink@1", "in": {"value": "c"}, "params": {"directory": "/usr/out"}})",
       registry);
-  checkFiles(graph, {0, 1}, diagnostics);
+  checkFiles(graph, {0, 1}, {"/"}, diagnostics);
   EXPECT_EQ(diagnostics.count(), 1u);
 }
 

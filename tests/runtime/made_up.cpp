@@ -231,8 +231,10 @@ Checked check(const std::string& text, const Registry& registry, const std::vect
   return checked;
 }
 
-Graph graphOf(const std::string& nodes, const Registry& registry, const fs::path& directory) {
-  Checked checked = check("{\"format\": 1, \"nodes\": {" + nodes + "}}", registry, {}, {}, directory);
+Graph graphOf(const std::string& nodes, const Registry& registry, const fs::path& directory,
+              const std::string& more) {
+  Checked checked =
+      check("{\"format\": 1, " + more + "\"nodes\": {" + nodes + "}}", registry, {}, {}, directory);
   for (const std::string& error : checked.errors) ADD_FAILURE() << error;
   return std::move(checked.graph);
 }
@@ -243,13 +245,21 @@ std::vector<int> nodesOf(const Graph& graph, const std::vector<std::string>& nam
   return nodes;
 }
 
+Value valueAt(const Graph& graph, const EvalReport& report, const std::string& node,
+              const std::string& port) {
+  const int i = graph.find(node);
+  const auto found = report.outputs.find(i);
+  if (found == report.outputs.end()) return {};
+  const std::vector<PortInfo>& ports = graph.nodes[static_cast<std::size_t>(i)].type->outputs;
+  for (std::size_t o = 0; o < ports.size(); ++o)
+    if (ports[o].name == port) return found->second.at(o).value;
+  return {};
+}
+
 double numberAt(const Graph& graph, const EvalReport& report, const std::string& node,
                 const std::string& port) {
-  const auto found = report.outputs.find(graph.find(node));
-  if (found == report.outputs.end() || !found->second.contains(port))
-    return std::numeric_limits<double>::quiet_NaN();
-  const auto number = found->second.at(port).value.as<double>();
-  return number ? *number : std::numeric_limits<double>::quiet_NaN();
+  const Value value = valueAt(graph, report, node, port);
+  return value.empty() ? std::numeric_limits<double>::quiet_NaN() : *value.as<double>();
 }
 
 std::string stateOf(const Graph& graph, const EvalReport& report, const std::string& node) {

@@ -64,12 +64,15 @@ struct Checked {
 /// Reads and checks `text` as the file "test.json" in `directory`.
 Checked check(const std::string& text, const Registry& registry, const std::vector<std::string>& sets = {},
               const std::vector<std::string>& vars = {}, const fs::path& directory = "/graphs");
-/// A graph of the given "nodes" content, checked to be without errors.
-Graph graphOf(const std::string& nodes, const Registry& registry, const fs::path& directory = "/graphs");
+/// A graph of the given "nodes" content and other keys (`"frames": "1-5", `), checked to be without errors.
+Graph graphOf(const std::string& nodes, const Registry& registry, const fs::path& directory = "/graphs",
+              const std::string& more = "");
 
 /// The wanted nodes by name.
 std::vector<int> nodesOf(const Graph& graph, const std::vector<std::string>& names);
-/// The number at "node.port" of a report.
+/// The value at "node.port" of a report; empty where there is none.
+Value valueAt(const Graph& graph, const EvalReport& report, const std::string& node, const std::string& port);
+/// The number there.
 double numberAt(const Graph& graph, const EvalReport& report, const std::string& node,
                 const std::string& port);
 /// The state of a node in a report, as a word; "absent" where it isn't in it.

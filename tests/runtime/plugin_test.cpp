@@ -28,7 +28,7 @@ TEST(Plugin, LoadsAPackWhoseNodesRun) {
   CancelToken token;
   const EvalReport report = evaluate(graph, {0}, cache, token);
   ASSERT_TRUE(report.ok());
-  EXPECT_EQ(*report.outputs.at(0).at("value").value.as<std::int64_t>(), 42);
+  EXPECT_EQ(*report.outputs.at(0).at(0).value.as<std::int64_t>(), 42);
 }
 
 TEST(Plugin, RefusesPacksOfAnotherKindByName) {

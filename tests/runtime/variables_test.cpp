@@ -71,7 +71,8 @@ TEST(Variables, ComeFromOutsideToo) {
   EXPECT_EQ(valueOf(R"("mesh": 1)", "text", R"("${mehs}")"),
             "n.text: there is no variable \"mehs\"; did you mean \"mesh\"?");
   EXPECT_EQ(valueOf("", "text", R"("${frame:04}")"),
-            "n.text: \"${frame:04}\" is not supported yet; this version evaluates one moment only");
+            "n.text: \"${frame:04}\" stands in a graph without frames; add \"frames\": \"1001-1040\" to the "
+            "graph, or say --frames 1001");
   EXPECT_EQ(valueOf(R"("x": 1)", "text", R"("${x:04}")"),
             "n.text: \"${x:04}\" has a format; only ${frame} takes one");
 }

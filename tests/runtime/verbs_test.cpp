@@ -27,7 +27,7 @@ class Verbs : public ::testing::Test {
   }
   int run(const std::string& path, const std::string& to = "") {
     RunOptions options;
-    options.graph = path;
+    options.graphs = {path};
     options.to = to;
     return run(options);
   }
@@ -106,12 +106,106 @@ TEST_F(Verbs, RunLooksForFilesOfWhatIsNeededOnly) {
   EXPECT_NE(err.str().find("r.file: there is no file"), std::string::npos);
 }
 
-TEST_F(Verbs, RunTellsWhatIsNotSupportedYet) {
-  EXPECT_EQ(run(graph(sink, R"("wedge": {"seed": [1, 2]}, )")), kWrongInput);
-  EXPECT_NE(err.str().find(":1:24: wedge: wedges are not supported yet"), std::string::npos) << err.str();
-  EXPECT_EQ(run(graph(sink, R"("frames": "1-5", )")), kOk);
-  EXPECT_NE(err.str().find(":1:25: warning: frames: frame ranges are not supported yet"), std::string::npos)
+TEST_F(Verbs, FramesThatWriteOneFileAreRefused) {
+  const std::string swept = R"("c": {"type": "Constant@1", "params": {"value": "${frame}"}},
+      "s": {"type": "Sink@1", "in": {"value": "c"}, "params": {"directory": "out"}})";
+  const std::string path = graph(swept, R"("frames": "1-5", )");
+  EXPECT_EQ(run(path), kWrongInput);
+  EXPECT_NE(
+      err.str().find("s.directory: frame 1 and frame 2 write to the same path; put ${frame:04} into it"),
+      std::string::npos)
       << err.str();
+  EXPECT_EQ(run(graph(sink, R"("frames": "1-5", )")), kOk) << err.str();  // nothing depends on the frame
+  EXPECT_NE(out.str().find("(2 nodes)"), std::string::npos) << out.str();
+}
+
+TEST_F(Verbs, OutputsOutsideOfTheGraphsFolderMustBeAllowed) {
+  const TemporaryDirectory elsewhere;
+  const std::string there = elsewhere.path().string();
+  RunOptions options;
+  options.graphs = {graph(R"("c": {"type": "Constant@1"},
+      "s": {"type": "Sink@1", "in": {"value": "c"}, "params": {"directory": "${out}"}})",
+                          "\"vars\": {\"out\": \"" + there + "/x\"}, ")};
+  EXPECT_EQ(run(options), kWrongInput);
+  EXPECT_NE(
+      err.str().find("s.directory: \"" + there + "/x\" is outside of the graph's folder; write below it"),
+      std::string::npos)
+      << err.str();
+  options.vars = {"out=" + there + "/y"};  // the user says so
+  EXPECT_EQ(run(options), kOk) << err.str();
+  options.vars.clear();
+  options.allowWrite = {there};
+  EXPECT_EQ(run(options), kOk) << err.str();
+  fs::create_directory_symlink(elsewhere.path(), directory.path() / "link");
+  options.allowWrite.clear();
+  options.graphs = {graph(R"("c": {"type": "Constant@1"},
+      "s": {"type": "Sink@1", "in": {"value": "c"}, "params": {"directory": "link/z"}})")};
+  EXPECT_EQ(run(options), kWrongInput) << "a link must not lead out";
+}
+
+TEST_F(Verbs, SeveralGraphsRunAsOneAndShare) {
+  directory.write("shots/a.json", R"({"format": 1, "nodes": {
+      "b": {"type": "MakeBlob@1", "params": {"size": 1000}}, "n": {"type": "SumBlob@1", "in": {"blob": "b"}},
+      "s": {"type": "Sink@1", "in": {"value": "n"}, "params": {"directory": "a"}}}})");
+  directory.write("shots/b.json", R"({"format": 1, "nodes": {
+      "b": {"type": "MakeBlob@1", "params": {"size": 1000}}, "n": {"type": "SumBlob@1", "in": {"blob": "b"}},
+      "s": {"type": "Sink@1", "in": {"value": "n"}, "params": {"directory": "b"}}}})");
+  RunOptions options;
+  options.graphs = {(directory.path() / "shots").string()};
+  EXPECT_EQ(run(options), kOk) << err.str();
+  EXPECT_EQ(counters->blobs, 1);
+  EXPECT_TRUE(fs::exists(directory.path() / "shots/a/value.txt"));
+  EXPECT_TRUE(fs::exists(directory.path() / "shots/b/value.txt"));
+  EXPECT_NE(out.str().find("graph  ran  cached  failed"), std::string::npos) << out.str();
+  options.graphs = {(directory.path() / "shots/*.json").string(),
+                    (directory.path() / "shots/a.json").string()};
+  EXPECT_EQ(run(options), kOk) << err.str();
+  options.graphs = {(directory.path() / "*.nothing").string()};
+  EXPECT_EQ(run(options), kWrongInput);
+  EXPECT_NE(err.str().find("no file is like"), std::string::npos);
+  directory.write("shots/c.json",
+                  R"({"format": 1, "nodes": {"s": {"type": "Sink@1", "params": {"directory": "c"}}}})");
+  options.graphs = {(directory.path() / "shots").string()};
+  EXPECT_EQ(run(options), kWrongInput);
+  EXPECT_NE(err.str().find("c.json"), std::string::npos);
+}
+
+TEST_F(Verbs, PlanSaysWhatRunWillDoAndWhy) {
+  PlanOptions plan;
+  const TemporaryDirectory cache;
+  plan.graphs = {graph(R"("c": {"type": "Constant@1", "params": {"value": 5}}, "x": {"type": "Constant@1"},
+      "a": {"type": "Add@1", "in": {"a": "c"}},
+      "s": {"type": "Sink@1", "in": {"value": "a"}, "params": {"directory": "out"}})")};
+  plan.cache = (cache.path() / "store").string();
+  const auto lineOf = [&](const std::string& node) {
+    out.str("");
+    err.str("");
+    Console console{out, err, cancel, false, 200};
+    EXPECT_EQ(planVerb(plan, registry, environment(directory.path()), console), kOk) << err.str();
+    std::istringstream lines(out.str());
+    for (std::string line; std::getline(lines, line);)
+      if (line.starts_with("  " + node + ' ')) return line;
+    return std::string();
+  };
+  EXPECT_NE(lineOf("c").find("run  never run"), std::string::npos) << out.str();
+  EXPECT_NE(lineOf("x").find("not needed"), std::string::npos) << out.str();
+  RunOptions options;
+  static_cast<ShotOptions&>(options) = plan;
+  EXPECT_EQ(run(options), kOk) << err.str();
+  EXPECT_NE(lineOf("s").find("hit"), std::string::npos) << out.str();
+  plan.sets = {"c.value=6"};
+  EXPECT_NE(lineOf("c").find("run  value 5 → 6"), std::string::npos) << out.str();
+  EXPECT_NE(lineOf("a").find("may run  upstream: c"), std::string::npos) << out.str();
+  plan.sets = {};
+  fs::remove(directory.path() / "out/value.txt");
+  EXPECT_NE(lineOf("s").find("value.txt is missing"), std::string::npos) << out.str();
+  plan.json = true;
+  out.str("");
+  Console console{out, err, cancel, false, 80};
+  EXPECT_EQ(planVerb(plan, registry, environment(directory.path()), console), kOk);
+  const auto first = nlohmann::json::parse(out.str().substr(0, out.str().find('\n')));
+  EXPECT_EQ(first["event"], "plan");
+  EXPECT_EQ(first["name"], "c");
 }
 
 TEST_F(Verbs, RunNamesTheNodeThatFailed) {
@@ -139,7 +233,7 @@ TEST_F(Verbs, RunIsCancelled) {
 
 TEST_F(Verbs, RunTakesOverridesAndQuiet) {
   RunOptions options;
-  options.graph = graph(sink, R"("vars": {"v": 1}, )");
+  options.graphs = {graph(sink, R"("vars": {"v": 1}, )")};
   options.sets = {"c.value=7", "s.directory=there"};
   options.vars = {"v=2"};
   options.quiet = true;
@@ -153,7 +247,7 @@ TEST_F(Verbs, RunTakesOverridesAndQuiet) {
 
 TEST_F(Verbs, RunPrintsJsonEvents) {
   RunOptions options;
-  options.graph = graph(sink);
+  options.graphs = {graph(sink)};
   options.json = true;
   EXPECT_EQ(run(options), kOk);
   std::istringstream lines(out.str());

@@ -1,0 +1,25 @@
+// Where results are found by their keys: in memory, then on disk.
+#pragma once
+
+#include <optional>
+
+#include "eval/cache.h"
+#include "eval/disk_store.h"
+#include "graph/node_type.h"
+
+namespace sherd {
+
+/// What is known of a result. Outputs that are in memory have their values, the others digests only.
+struct Known {
+  Outputs outputs;
+  ResultRecord record;
+};
+
+/// Nothing where no result is known, where the record doesn't fit the type's outputs, or where a file that
+/// the node wrote is missing or has been changed.
+std::optional<Known> lookUp(const NodeType& type, const Digest& key, Cache& cache, const DiskStore* disk);
+
+/// The first of the files that is not as it was written; null where all are.
+const WrittenFile* firstChanged(const ResultRecord& record);
+
+}  // namespace sherd
