@@ -153,14 +153,15 @@ std::vector<std::string> RecordLog::verify() const {
       if (!mapping.bytes().empty()) lines.push_back("records/" + name + ": not a segment of this format");
       continue;
     }
+    const std::string_view bytes = merged ? merged->bytes() : mapping.bytes();
     const std::size_t begin = merged ? merged->framesBegin() : kYoungHead;
     bool lost = false;
-    const FrameScan scan = eachFrame(mapping.bytes(), begin, [&](Frame frame) {
+    const FrameScan scan = eachFrame(bytes, begin, [&](Frame frame) {
       if (merged != nullptr && merged->find(keyOf(frame)) != frame) lost = true;
     });
     // The end of one in use may be half written at this moment.
     const bool complete = merged != nullptr || lockIfFree(file);
-    const std::size_t damaged = scan.damaged + (complete ? mapping.bytes().size() - scan.end : 0);
+    const std::size_t damaged = scan.damaged + (complete ? bytes.size() - scan.end : 0);
     if (damaged > 0)
       lines.push_back("records/" + name + ": " + std::to_string(damaged) + " bytes are damaged");
     else if (lost)
