@@ -1,0 +1,141 @@
+// Small values by hand with every optional field set, and with numbers that are easily lost: −0, NaN, the
+// smallest and the largest.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "support/tet_families.h"
+#include "types/fields.h"
+#include "types/fragments.h"
+#include "types/partition.h"
+
+namespace sherd::made {
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
+inline constexpr double kLargest = std::numeric_limits<double>::max();
+
+inline TriMesh triMesh() {
+  TriMesh mesh = *families::box(1, 1, 1, Vec3(1, 2, 3)).surface;
+  const std::size_t corners = mesh.cornerCount();
+  mesh.positions[0] = Vec3(-0.0, kSmallest, -kLargest);
+  mesh.normals.assign(corners, Vec3(0, -0.0, 1));
+  mesh.uvSets = {{"map1", std::vector<Vec2>(corners, Vec2(0.25, -0.0))},
+                 {"", std::vector<Vec2>(corners, Vec2(kNan, 2))}};
+  mesh.colorSets = {{"Farbe ä", std::vector<Vec4>(corners, Vec4(0, 0.5, 1, -0.0))}};
+  mesh.materials = {"clay", "", "glaze"};
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    mesh.materialOf.push_back(static_cast<Index>(t % 3));
+  mesh.frame = {0.01, FileFrame::Up::Z};
+  mesh.source = "a b/ü.obj";
+  return mesh;
+}
+
+inline TetMesh tetMesh() {
+  TetMesh mesh = families::box(1, 1, 1, Vec3(1, 2, 3));
+  mesh.surface = std::make_shared<const TriMesh>(triMesh());
+  mesh.insideFraction[0] = -0.0;
+  mesh.quality = {70, 110, 6, 5.5, kSmallest};
+  return mesh;
+}
+
+inline std::shared_ptr<const TetMesh> sharedTets() { return std::make_shared<const TetMesh>(tetMesh()); }
+
+inline Impact impact() {
+  Impact impact;
+  impact.hit = true;
+  impact.time = 0.45;
+  impact.centreOfMass = Vec3(-0.0, 1, kNan);
+  impact.contacts = {{Vec3(1, 2, 3), Vec3(4, -0.0, 6), 1e-4, 0.01},
+                     {Vec3(3, 2, 1), Vec3(6, 5, 4), 1e-5, 0.02}};
+  impact.before = {Vec3(0, 1, 0), Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), Vec3(0, -4, 0), Vec3(1, 2, 3)};
+  impact.after = {Vec3(0, 1, 0), Eigen::Quaterniond(0.5, 0.5, 0.5, -0.0), Vec3(0, 1, 0), Vec3(-0.0, 0, 3)};
+  return impact;
+}
+
+inline EnergyField energyField() {
+  EnergyField field;
+  field.tets = sharedTets();
+  field.material = {7800, 2e11, 0.3};
+  field.tetEnergy.assign(field.tets->tets.size(), kSmallest);
+  field.nodeEnergy.assign(field.tets->nodes.size(), -0.0);
+  field.displacement.assign(field.tets->nodes.size(), Vec3(1e-6, kNan, -0.0));
+  return field;
+}
+
+inline WeightField weightField() {
+  WeightField field;
+  field.tets = sharedTets();
+  field.material = {1, 2, -0.25};
+  field.weight.assign(field.tets->nodes.size(), 0.125);
+  field.volume.assign(field.tets->nodes.size(), 0.75);
+  return field;
+}
+
+inline Embedding embedding() {
+  Embedding e;
+  e.tets = sharedTets();
+  e.metric = Embedding::Metric::Interior;
+  e.coordinates = Eigen::MatrixXd::Random(5, static_cast<Eigen::Index>(e.tets->nodes.size()));
+  e.coordinates(4, 0) = -0.0;
+  e.diameter = 3.7;
+  return e;
+}
+
+inline Sites sites() {
+  Sites s;
+  s.positions = Eigen::MatrixXd::Random(5, 3);
+  s.energy = 0.5;
+  s.gamma = kNan;
+  s.degreeGiven = true;
+  return s;
+}
+
+inline Partition partition() {
+  Partition p;
+  p.embedding = std::make_shared<const Embedding>(embedding());
+  p.material = {2, 3, 0.4};
+  p.sites = Eigen::MatrixXd::Random(5, 3);
+  for (std::size_t n = 0; n < p.embedding->tets->nodes.size(); ++n)
+    p.label.push_back(static_cast<Index>(n % 3));
+  p.energy = kLargest;
+  p.gamma = 1e-9;
+  p.degreeGiven = true;
+  p.iterations = 17;
+  p.converged = true;
+  return p;
+}
+
+inline Piece piece(const char* name, Index cell) {
+  Piece p;
+  p.name = name;
+  p.cell = cell;
+  p.surface = {{0, 1, 2}, {2, 1, 3}};
+  p.surfaceSource = {0, 5};
+  p.surfaceCut = {-1, 0};
+  p.crack = {{3, 2, 1}};
+  p.crackNeighbour = {1 - cell};
+  p.volume = 0.1;
+  p.centreOfMass = Vec3(1, -0.0, 2);
+  p.inertia << 1, 2, 3, 4, 5, 6, 7, 8, -0.0;
+  return p;
+}
+
+inline Fragments fragments() {
+  Fragments f;
+  f.tets = sharedTets();
+  f.material = {3, 4, 0.1};
+  f.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, -0.0), Vec3(0, 0, kSmallest)};
+  f.cutCorners = {{CornerWeights(1, 0, 0), CornerWeights(0, 1, 0), CornerWeights(0.25, 0.25, 0.5)}};
+  f.pieces = {piece("piece_0001", 0), piece("piece_0002", 1)};
+  f.sites = 3;
+  f.energy = 2;
+  f.gamma = 3;
+  f.degreeGiven = true;
+  f.counts = {1, 2, 3, 4, 5, 6, 7};
+  return f;
+}
+
+}  // namespace sherd::made
