@@ -20,7 +20,14 @@ GONE = object()
 BASE = {
     "format": 1,
     "fps": 24,
-    "vars": {"mesh": "${ASSETS}/vase.obj", "height": 1.5, "count": 500, "turn": [25, 0, 15], "yes": True, "where": "floor"},
+    "vars": {
+        "mesh": "${ASSETS}/vase.obj",
+        "height": 1.5,
+        "count": 500,
+        "turn": [25, 0, 15],
+        "yes": True,
+        "where": "floor",
+    },
     "targets": {"all": ["hit"]},
     "nodes": {
         "mesh": {"type": "LoadMesh@1", "params": {"file": "${mesh}"}},
@@ -42,7 +49,10 @@ RIGHT = {
     "a variable for a boolean": {"nodes.hit.params.standing": "${yes}"},
     "a variable for a word": {"nodes.hit.params.scene": "${where}"},
     "a whole number with a point": {"nodes.tets.params.tets": 500.0},
-    "a wired parameter": {"nodes.hit.in.threshold": "other.work", "nodes.other": {"type": "Simulate@1", "in": {"body": "tets"}}},
+    "a wired parameter": {
+        "nodes.hit.in.threshold": "other.work",
+        "nodes.other": {"type": "Simulate@1", "in": {"body": "tets"}},
+    },
     "a required parameter that is wired": {
         "nodes.mesh": {"type": "LoadMesh@1", "in": {"file": "picture"}},
         "nodes.picture": {"type": "Preview@1", "in": {"pieces": "pieces"}, "params": {"file": "out/a.obj"}},
@@ -135,7 +145,7 @@ def plain(text):
 
 class Checks:
     def __init__(self, program, schema):
-        self.program, self.failures = program, 0
+        self.program, self.failures = str(pathlib.Path(program).resolve()), 0
         self.validator = jsonschema.Draft7Validator(schema)
 
     def expect(self, holds, what):
@@ -150,14 +160,14 @@ class Checks:
     def said_by_check(self, graphs):
         """What `sherd check` says of each of the graphs, by name, and its exit code."""
         with tempfile.TemporaryDirectory() as folder:
-            paths = {name: pathlib.Path(folder, f"{i}.json") for i, name in enumerate(graphs)}
+            paths = {name: pathlib.Path(folder, f"case_{i:03}.json") for i, name in enumerate(graphs)}
             for name, path in paths.items():
                 path.write_text(json.dumps(graphs[name]))
             command = [self.program, "check", *map(str, paths.values())]
             run = subprocess.run(command, capture_output=True, text=True, cwd=folder, timeout=120)
             lines = (run.stdout + run.stderr).splitlines()
-            said = {name: [line for line in lines if path.name + ":" in line.split(" ")[0]] for name, path in paths.items()}
-            return {name: "\n".join(of) for name, of in said.items()}, run.returncode
+            of = {name: [line for line in lines if f"{path.name}:" in line.split(" ")[0]] for name, path in paths.items()}
+            return {name: "\n".join(said) for name, said in of.items()}, run.returncode
 
 
 def pasted_snippets(program):
@@ -186,7 +196,7 @@ def main(program, graphs):
         checks.expect("no errors" in said[name], f"{name}: `check` says: {said[name]}")
 
     pasted, count = pasted_snippets(program)
-    checks.expect(len(pasted["nodes"]) == count >= 10, f"{count} snippets, {len(pasted['nodes'])} of them with names of their own")
+    checks.expect(len(pasted["nodes"]) == count >= 10, f"{count} snippets with {len(pasted['nodes'])} names")
     checks.is_valid("snippets", pasted)
     said, _ = checks.said_by_check({"snippets": pasted})
     for line in said["snippets"].splitlines():
