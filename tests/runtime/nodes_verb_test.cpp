@@ -71,7 +71,7 @@ TEST_F(NodesVerb, TellsAllAboutOneType) {
             "was 0.5\n");
   expectHas(text, "Former names\n  \"Saw\"\n");
   expectHas(text, R"("cut_dxf_sheet": { "type": "CutDXFSheet@3",
-                   "in": { "blob": "make_blob", "all": "add" },
+                   "in": { "blob": "make_blob", "all": "constant" },
                    "params": { "file": "FILE" } })");
 }
 
