@@ -40,6 +40,21 @@ BASE = {
     },
 }
 
+FILL = {
+    "help": "Fills a surface.",
+    "vars": {"count": 300},
+    "inputs": {"mesh": {"type": "Mesh", "optional": False, "help": "a surface"}},
+    "outputs": {"tets": {"from": "cage.tets", "type": "TetMesh", "help": "its inside"}},
+    "nodes": {"cage": {"type": "Tetrahedralize@1", "in": {"mesh": "in.mesh"}, "params": {"tets": "${count}"}}},
+}
+
+
+def with_fill(**parts):
+    """BASE with a node that stands for the subgraph FILL, some parts of which are changed."""
+    fill = {key: value for key, value in {**FILL, **parts}.items() if value is not GONE}
+    return {"subgraphs": {"fill": fill}, "nodes.tets": {"type": "fill", "in": {"mesh": "mesh"}}}
+
+
 # Changes of BASE: where, and what stands there then. Where not a list: a path with dots.
 RIGHT = {
     "as it is": {},
@@ -66,6 +81,13 @@ RIGHT = {
     },
     "a target that is one node": {"targets.one": "hit"},
     "no fps": {"fps": GONE},
+    "a name with a space and letters of another alphabet": {"targets.Größe 2": ["hit"]},
+    "a subgraph": with_fill(),
+    "a subgraph in few words": with_fill(
+        help=GONE, vars=GONE, inputs={"mesh": "Mesh"}, outputs={"tets": "cage"},
+        nodes={"cage": {"type": "Tetrahedralize@1", "in": {"mesh": "in.mesh"}}},
+    ),
+    "a subgraph with a value for its variable": {**with_fill(), "nodes.tets.params": {"count": 400}},
 }
 
 # As RIGHT, with a part of what `check` says of it.
@@ -119,6 +141,17 @@ WRONG = {
     "a variable that is null": ({"vars.height": None}, "a variable is"),
     "a variable that the program sets": ({"vars.frame": 3}, "set by the program"),
     "a target that is a number": ({"targets.all": 1}, "targets.all"),
+    "a misspelt key of a subgraph": (with_fill(output={}), 'did you mean "outputs"'),
+    "a subgraph without nodes": (with_fill(nodes=GONE), '"nodes" is missing'),
+    "a subgraph that is a number": ({"subgraphs": {"fill": 3}}, "a subgraph"),
+    "a subgraph in a file without a name": ({"subgraphs": {"fill": ""}}, "name of the file is empty"),
+    "a subgraph in a file that a variable names": ({"subgraphs": {"fill": "${mesh}"}}, "can't be named by variables"),
+    "an input of a subgraph without a type": (with_fill(inputs={"mesh": {"help": "a"}}), '"type" is missing'),
+    "an output of a subgraph from nowhere": (with_fill(outputs={"tets": {"help": "a"}}), '"from" is missing'),
+    "a misspelt parameter in a subgraph": (
+        with_fill(nodes={"cage": {"type": "Tetrahedralize@1", "in": {"mesh": "in.mesh"}, "params": {"tet": 300}}}),
+        'did you mean "tets"',
+    ),
 }
 
 
@@ -194,6 +227,9 @@ def main(program, graphs):
     for name, graph in right.items():
         checks.is_valid(name, graph)
         checks.expect("no errors" in said[name], f"{name}: `check` says: {said[name]}")
+
+    checks.is_valid("a subgraph in a file of its own", {"format": 1, **FILL})
+    checks.expect(not checks.validator.is_valid(FILL), "a subgraph in a file without a format: the schema lets it pass")
 
     pasted, count = pasted_snippets(program)
     checks.expect(len(pasted["nodes"]) == count >= 10, f"{count} snippets with {len(pasted['nodes'])} names")
