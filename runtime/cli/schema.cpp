@@ -42,9 +42,17 @@ Json namedObject(Json values) {
 // ---- parameters
 // -----------------------------------------------------------------------------------------------
 
+/// A value of the type, or the string "${x}".
+Json orVariable(const char* type) {
+  return {
+      {"type", {type, "string"}},
+      {"pattern", kOneVariable},
+      {"patternErrorMessage", std::string("This would have to be of type ") + type + ", or \"${name}\"."}};
+}
+
 /// Applies to numbers only: a string in their place is held to be a variable by its pattern.
 Json numberSchema(const char* type, const ParamInfo& info) {
-  Json schema{{"type", {type, "string"}}, {"pattern", kOneVariable}};
+  Json schema = orVariable(type);
   auto limit = [](double value) {
     return value == std::floor(value) && std::abs(value) < 1e15 ? Json(static_cast<std::int64_t>(value))
                                                                 : Json(value);
@@ -57,19 +65,18 @@ Json numberSchema(const char* type, const ParamInfo& info) {
 Json kindSchema(const ParamInfo& info) {
   switch (info.kind) {
     case ParamKind::Boolean:
-      return {{"type", {"boolean", "string"}}, {"pattern", kOneVariable}};
+      return orVariable("boolean");
     case ParamKind::Integer:
       return numberSchema("integer", info);
     case ParamKind::Number:
       return numberSchema("number", info);
-    case ParamKind::Vector3:
-      return {{"type", {"array", "string"}},
-              {"items", numberSchema("number", info)},
-              {"minItems", 3},
-              {"maxItems", 3},
-              {"pattern", kOneVariable}};
+    case ParamKind::Vector3: {
+      Json schema = orVariable("array");
+      schema.update({{"items", numberSchema("number", info)}, {"minItems", 3}, {"maxItems", 3}});
+      return schema;
+    }
     case ParamKind::Choice:
-      return {{"anyOf", {{{"enum", info.choices}}, {{"type", "string"}, {"pattern", kSomeVariable}}}}};
+      return {{"type", "string"}, {"anyOf", {{{"enum", info.choices}}, {{"pattern", kSomeVariable}}}}};
     default:
       return info.required ? Json{{"type", "string"}, {"minLength", 1}} : Json{{"type", "string"}};
   }
@@ -131,33 +138,33 @@ Json typeSchema(const NodeType& type) {
   return schema;
 }
 
-/// Older versions and names under which graphs still load.
-std::vector<std::string> olderNames(const NodeType& type) {
-  std::vector<std::string> names;
-  for (const Migration& migration : type.migrations) {
-    names.push_back(type.name + '@' + std::to_string(migration.from));
-    for (const std::string& former : type.formerNames)
-      names.push_back(former + '@' + std::to_string(migration.from));
-  }
-  for (const std::string& former : type.formerNames)
-    names.push_back(former + '@' + std::to_string(type.version));
-  return names;
+/// Older versions and names under which graphs still load, as parts of a regular expression.
+std::string olderNames(const NodeType& type) {
+  std::vector<std::string> names = type.formerNames;
+  std::string text;
+  auto add = [&](const std::string& name, int version) {
+    text += (text.empty() ? "" : "|") + name + '@' + std::to_string(version);
+  };
+  for (const std::string& former : names) add(former, type.version);
+  names.push_back(type.name);
+  for (const Migration& migration : type.migrations)
+    for (const std::string& name : names) add(name, migration.from);
+  return text;
 }
 
+/// What has been replaced and what the file itself defines is accepted, but not offered.
 Json typeKeySchema(const Registry& registry) {
-  Json names = Json::array(), helps = Json::array(), older = Json::array();
+  Json names = Json::array(), helps = Json::array(), choices = Json::array();
+  std::string older;
   for (const NodeType* type : registry.all()) {
     names.push_back(versioned(*type));
     helps.push_back(type->help);
-    for (const std::string& name : olderNames(*type)) older.push_back(name);
+    const std::string more = olderNames(*type);
+    older += (older.empty() || more.empty() ? "" : "|") + more;
   }
-  Json choices = Json::array();
-  if (!names.empty()) choices.push_back({{"enum", std::move(names)}, {"enumDescriptions", std::move(helps)}});
-  if (!older.empty())
-    choices.push_back({{"enum", std::move(older)},
-                       {"doNotSuggest", true},
-                       {"deprecationMessage", "an older version; `sherd upgrade` brings it up to date"}});
-  choices.push_back(described("a subgraph", {{"type", "string"}, {"pattern", "^[^@]+$"}}));
+  choices.push_back({{"enum", std::move(names)}, {"enumDescriptions", std::move(helps)}});
+  if (!older.empty()) choices.push_back(described("an older version", {{"pattern", "^(" + older + ")$"}}));
+  choices.push_back(described("a subgraph", {{"pattern", "^[^@]+$"}}));
   return described("the node's type and version, or the name of a subgraph",
                    {{"type", "string"}, {"anyOf", std::move(choices)}});
 }
@@ -278,7 +285,9 @@ Json fileSchema() {
 
 /// In a file without subgraphs every type has its version.
 Json versionsWithoutSubgraphs() {
-  const Json type = {{"properties", {{"type", {{"pattern", "@"}}}}}};
+  const Json withVersion = {{"pattern", "@"},
+                            {"patternErrorMessage", "A type has its version: \"LoadMesh@1\"."}};
+  const Json type = {{"properties", {{"type", withVersion}}}};
   return {{"if", {{"not", {{"required", {"subgraphs"}}}}}},
           {"then", {{"properties", {{"nodes", {{"additionalProperties", type}}}}}}}};
 }

@@ -16,8 +16,8 @@ namespace sherd {
 /// What a schema can't know stays with `sherd check`: whether linked nodes, ports and variables are there,
 /// the types of what is wired, the values behind "${x}", loops, files.
 ///
-/// For editors of the VS Code family it also has the keywords `enumDescriptions`, `defaultSnippets`,
-/// `allowComments` and `allowTrailingCommas`, which validators pass over.
+/// For editors of the VS Code family it also has the keywords `enumDescriptions`, `patternErrorMessage`,
+/// `defaultSnippets`, `allowComments` and `allowTrailingCommas`, which validators pass over.
 std::string graphSchema(const Registry& registry);
 
 }  // namespace sherd

@@ -27,12 +27,13 @@ void appendWrapped(std::string& line, const std::string& text, std::size_t inden
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
     const std::string word = text.substr(begin, end - begin);
-    if (column > indent && column + widthOf(word) > right) {
-      line += '\n' + std::string(indent, ' ');
-      column = indent;
+    if (column > indent && column + 1 + widthOf(word) > right) {
+      line += '\n' + std::string(indent, ' ') + word;
+      column = indent + widthOf(word);
+    } else {
+      line += (begin == 0 ? "" : " ") + word;
+      column += (begin == 0 ? 0 : 1) + widthOf(word);
     }
-    line += word + ' ';
-    column += widthOf(word) + 1;
     begin = end + 1;
   }
 }

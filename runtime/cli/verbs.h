@@ -32,7 +32,7 @@ int checkVerb(const ShotOptions& options, const Registry& registry, const Enviro
               Console& console);
 
 struct NodesOptions {
-  std::string type;       ///< "Name" or "Name@N"; empty: all
+  std::string type = {};  ///< "Name" or "Name@N"; empty: all
   bool json = false;      ///< as JSON
   bool schema = false;    ///< a JSON Schema of graph files instead, of all types
   bool markdown = false;  ///< the node reference instead, of all types

@@ -29,7 +29,7 @@ install(FILES nodes/README.md DESTINATION share/doc/sherd RENAME nodes.md)
 
 # The handshake wants the very version.
 configure_package_config_file(runtime/package/sherdConfig.cmake.in ${PROJECT_BINARY_DIR}/sherdConfig.cmake
-                              INSTALL_DESTINATION lib/cmake/sherd PATH_VARS CMAKE_INSTALL_PREFIX)
+                              INSTALL_DESTINATION lib/cmake/sherd)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/sherdConfigVersion.cmake COMPATIBILITY ExactVersion)
 install(EXPORT sherdTargets NAMESPACE sherd:: DESTINATION lib/cmake/sherd)
 install(FILES ${PROJECT_BINARY_DIR}/sherdConfig.cmake ${PROJECT_BINARY_DIR}/sherdConfigVersion.cmake

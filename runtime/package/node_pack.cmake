@@ -3,7 +3,6 @@
 function(sherd_add_node_pack NAME)
   add_library(${NAME} MODULE ${ARGN})
   target_link_libraries(${NAME} PRIVATE sherd::graph sherd::types)
-  target_compile_features(${NAME} PRIVATE cxx_std_20)
   set_target_properties(${NAME} PROPERTIES PREFIX "" SUFFIX ".so" CXX_EXTENSIONS OFF)
   if(NOT NAME MATCHES "_nodes$")
     set_target_properties(${NAME} PROPERTIES OUTPUT_NAME ${NAME}_nodes)

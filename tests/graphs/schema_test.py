@@ -20,7 +20,14 @@ GONE = object()
 BASE = {
     "format": 1,
     "fps": 24,
-    "vars": {"mesh": "${ASSETS}/vase.obj", "height": 1.5, "count": 500, "turn": [25, 0, 15], "yes": True, "where": "floor"},
+    "vars": {
+        "mesh": "${ASSETS}/vase.obj",
+        "height": 1.5,
+        "count": 500,
+        "turn": [25, 0, 15],
+        "yes": True,
+        "where": "floor",
+    },
     "targets": {"all": ["hit"]},
     "nodes": {
         "mesh": {"type": "LoadMesh@1", "params": {"file": "${mesh}"}},
@@ -33,6 +40,21 @@ BASE = {
     },
 }
 
+FILL = {
+    "help": "Fills a surface.",
+    "vars": {"count": 300},
+    "inputs": {"mesh": {"type": "Mesh", "optional": False, "help": "a surface"}},
+    "outputs": {"tets": {"from": "cage.tets", "type": "TetMesh", "help": "its inside"}},
+    "nodes": {"cage": {"type": "Tetrahedralize@1", "in": {"mesh": "in.mesh"}, "params": {"tets": "${count}"}}},
+}
+
+
+def with_fill(**parts):
+    """BASE with a node that stands for the subgraph FILL, some parts of which are changed."""
+    fill = {key: value for key, value in {**FILL, **parts}.items() if value is not GONE}
+    return {"subgraphs": {"fill": fill}, "nodes.tets": {"type": "fill", "in": {"mesh": "mesh"}}}
+
+
 # Changes of BASE: where, and what stands there then. Where not a list: a path with dots.
 RIGHT = {
     "as it is": {},
@@ -42,7 +64,10 @@ RIGHT = {
     "a variable for a boolean": {"nodes.hit.params.standing": "${yes}"},
     "a variable for a word": {"nodes.hit.params.scene": "${where}"},
     "a whole number with a point": {"nodes.tets.params.tets": 500.0},
-    "a wired parameter": {"nodes.hit.in.threshold": "other.work", "nodes.other": {"type": "Simulate@1", "in": {"body": "tets"}}},
+    "a wired parameter": {
+        "nodes.hit.in.threshold": "other.work",
+        "nodes.other": {"type": "Simulate@1", "in": {"body": "tets"}},
+    },
     "a required parameter that is wired": {
         "nodes.mesh": {"type": "LoadMesh@1", "in": {"file": "picture"}},
         "nodes.picture": {"type": "Preview@1", "in": {"pieces": "pieces"}, "params": {"file": "out/a.obj"}},
@@ -56,6 +81,13 @@ RIGHT = {
     },
     "a target that is one node": {"targets.one": "hit"},
     "no fps": {"fps": GONE},
+    "a name with a space and letters of another alphabet": {"targets.Größe 2": ["hit"]},
+    "a subgraph": with_fill(),
+    "a subgraph in few words": with_fill(
+        help=GONE, vars=GONE, inputs={"mesh": "Mesh"}, outputs={"tets": "cage"},
+        nodes={"cage": {"type": "Tetrahedralize@1", "in": {"mesh": "in.mesh"}}},
+    ),
+    "a subgraph with a value for its variable": {**with_fill(), "nodes.tets.params": {"count": 400}},
 }
 
 # As RIGHT, with a part of what `check` says of it.
@@ -109,6 +141,17 @@ WRONG = {
     "a variable that is null": ({"vars.height": None}, "a variable is"),
     "a variable that the program sets": ({"vars.frame": 3}, "set by the program"),
     "a target that is a number": ({"targets.all": 1}, "targets.all"),
+    "a misspelt key of a subgraph": (with_fill(output={}), 'did you mean "outputs"'),
+    "a subgraph without nodes": (with_fill(nodes=GONE), '"nodes" is missing'),
+    "a subgraph that is a number": ({"subgraphs": {"fill": 3}}, "a subgraph"),
+    "a subgraph in a file without a name": ({"subgraphs": {"fill": ""}}, "name of the file is empty"),
+    "a subgraph in a file that a variable names": ({"subgraphs": {"fill": "${mesh}"}}, "can't be named by variables"),
+    "an input of a subgraph without a type": (with_fill(inputs={"mesh": {"help": "a"}}), '"type" is missing'),
+    "an output of a subgraph from nowhere": (with_fill(outputs={"tets": {"help": "a"}}), '"from" is missing'),
+    "a misspelt parameter in a subgraph": (
+        with_fill(nodes={"cage": {"type": "Tetrahedralize@1", "in": {"mesh": "in.mesh"}, "params": {"tet": 300}}}),
+        'did you mean "tets"',
+    ),
 }
 
 
@@ -135,7 +178,7 @@ def plain(text):
 
 class Checks:
     def __init__(self, program, schema):
-        self.program, self.failures = program, 0
+        self.program, self.failures = str(pathlib.Path(program).resolve()), 0
         self.validator = jsonschema.Draft7Validator(schema)
 
     def expect(self, holds, what):
@@ -150,14 +193,14 @@ class Checks:
     def said_by_check(self, graphs):
         """What `sherd check` says of each of the graphs, by name, and its exit code."""
         with tempfile.TemporaryDirectory() as folder:
-            paths = {name: pathlib.Path(folder, f"{i}.json") for i, name in enumerate(graphs)}
+            paths = {name: pathlib.Path(folder, f"case_{i:03}.json") for i, name in enumerate(graphs)}
             for name, path in paths.items():
                 path.write_text(json.dumps(graphs[name]))
             command = [self.program, "check", *map(str, paths.values())]
             run = subprocess.run(command, capture_output=True, text=True, cwd=folder, timeout=120)
             lines = (run.stdout + run.stderr).splitlines()
-            said = {name: [line for line in lines if path.name + ":" in line.split(" ")[0]] for name, path in paths.items()}
-            return {name: "\n".join(of) for name, of in said.items()}, run.returncode
+            of = {name: [line for line in lines if f"{path.name}:" in line.split(" ")[0]] for name, path in paths.items()}
+            return {name: "\n".join(said) for name, said in of.items()}, run.returncode
 
 
 def pasted_snippets(program):
@@ -185,8 +228,11 @@ def main(program, graphs):
         checks.is_valid(name, graph)
         checks.expect("no errors" in said[name], f"{name}: `check` says: {said[name]}")
 
+    checks.is_valid("a subgraph in a file of its own", {"format": 1, **FILL})
+    checks.expect(not checks.validator.is_valid(FILL), "a subgraph in a file without a format: the schema lets it pass")
+
     pasted, count = pasted_snippets(program)
-    checks.expect(len(pasted["nodes"]) == count >= 10, f"{count} snippets, {len(pasted['nodes'])} of them with names of their own")
+    checks.expect(len(pasted["nodes"]) == count >= 10, f"{count} snippets with {len(pasted['nodes'])} names")
     checks.is_valid("snippets", pasted)
     said, _ = checks.said_by_check({"snippets": pasted})
     for line in said["snippets"].splitlines():

@@ -51,7 +51,7 @@ sherd::NodeType takeShapeNode() {
       .run([](const NoParams&, sherd::NodeIo&) -> sherd::Result<void> { return {}; });
 }
 }  // namespace
-SHERD_NODE_PACK(makeShapeNode, takeShapeNode)
+SHERD_NODE_PACK(packedNode, makeShapeNode, takeShapeNode)
 #elif defined(PACK_GOOD)
 SHERD_NODE_PACK(packedNode)
 #elif defined(PACK_TWICE)
