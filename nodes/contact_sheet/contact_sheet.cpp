@@ -14,22 +14,31 @@ namespace {
 
 constexpr Rgb kPaper{244, 244, 242}, kInk{44, 47, 52};
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
-constexpr int kMostLines = 4;
+constexpr int kMostLines = 4, kMostColumns = 1000;
 constexpr double kTallest = 1.5;  // of a tile's picture, in widths
 
-/// What all tiles have in common.
-struct Sheet {
-  int columns = 1, rows = 1;
-  PictureSize box;    ///< that each picture is made to fit into
-  PictureSize tile;   ///< the room for it: the box, as high as the highest picture
-  int dots = 1;       ///< pixels to a dot of the font
-  int textLines = 0;  ///< below each picture
-  int margin = 0;
+/// One picture's place in its tile.
+struct Tile {
+  PictureSize size;
+  std::vector<std::string> lines;  ///< of its label
+};
 
-  int textHeight() const { return textLines == 0 ? 0 : (3 + kLineDots * textLines) * dots; }
-  std::int64_t step(bool across) const { return margin + (across ? tile.width : tile.height + textHeight()); }
-  std::int64_t width(std::int64_t across) const { return margin + across * step(true); }
-  std::int64_t height(std::int64_t down) const { return margin + down * step(false); }
+struct Row {
+  std::int64_t top = 0;   ///< of its tiles
+  int pictureHeight = 0;  ///< of the highest picture
+};
+
+struct Sheet {
+  std::vector<Tile> tiles;
+  std::vector<Row> rows;
+  int columns = 1, tileWidth = 0, margin = 0;
+  int dots = 1;  ///< pixels to a dot of the font
+  std::int64_t width = 0, height = 0;
+
+  int textHeight(std::size_t lines) const {
+    return lines == 0 ? 0 : (3 + kLineDots * static_cast<int>(lines)) * dots;
+  }
+  int left(int column) const { return margin + column * (tileWidth + margin); }
 };
 
 Result<void> checkInput(const std::vector<SheetPicture>& pictures, const ContactSheetParams& params) {
@@ -37,7 +46,7 @@ Result<void> checkInput(const std::vector<SheetPicture>& pictures, const Contact
     if (value >= low && value <= high) return {};
     return failure(fmt::format("{} is {}", name, value), fmt::format("{} to {}", low, high), name);
   };
-  SHERD_CHECK(check(params.columns, 0, 1000, "columns"));
+  SHERD_CHECK(check(params.columns, 0, kMostColumns, "columns"));
   SHERD_CHECK(check(params.width, 32, 4096, "width"));
   SHERD_CHECK(check(params.margin, 0, 256, "margin"));
   if (pictures.empty())
@@ -50,40 +59,64 @@ Result<void> checkInput(const std::vector<SheetPicture>& pictures, const Contact
   return {};
 }
 
-/// Columns with which the sheet's sides differ least; of equally good ones those that leave fewer gaps.
-int columnsOf(const Sheet& sheet, int count) {
+std::vector<Tile> makeTiles(const std::vector<SheetPicture>& pictures, const Sheet& sheet) {
+  const PictureSize box{sheet.tileWidth, static_cast<int>(kTallest * sheet.tileWidth)};
+  const int columns = (sheet.tileWidth / sheet.dots + 1) / kCharacterDots;
+  std::vector<Tile> tiles;
+  for (const SheetPicture& entry : pictures)
+    tiles.push_back({fittedSize(*entry.picture, box), wrapText(entry.label, columns, kMostLines)});
+  return tiles;
+}
+
+/// Puts the tiles into rows, each as high as what stands in it.
+void makeRows(Sheet& sheet, int columns) {
+  sheet.columns = columns;
+  sheet.rows.clear();
+  sheet.height = sheet.margin;
+  for (std::size_t begin = 0; begin < sheet.tiles.size(); begin += static_cast<std::size_t>(columns)) {
+    const std::size_t end = std::min(begin + static_cast<std::size_t>(columns), sheet.tiles.size());
+    Row row{sheet.height, 0};
+    std::size_t lines = 0;
+    for (std::size_t t = begin; t < end; ++t) {
+      row.pictureHeight = std::max(row.pictureHeight, sheet.tiles[t].size.height);
+      lines = std::max(lines, sheet.tiles[t].lines.size());
+    }
+    sheet.rows.push_back(row);
+    sheet.height += row.pictureHeight + sheet.textHeight(lines) + sheet.margin;
+  }
+  sheet.width = sheet.left(columns);
+}
+
+/// Rows with which the sheet's sides differ least; of equally good ones those that leave fewer gaps.
+void makeNearlySquare(Sheet& sheet) {
+  const int count = static_cast<int>(sheet.tiles.size());
   int best = 1, bestGaps = 0;
   double bestStretch = 0;
-  for (int columns = 1; columns <= count; ++columns) {
-    const int rows = (count + columns - 1) / columns, gaps = rows * columns - count;
-    const double stretch = std::abs(
-        std::log(static_cast<double>(sheet.width(columns)) / static_cast<double>(sheet.height(rows))));
+  for (int columns = 1; columns <= std::min(count, kMostColumns); ++columns) {
+    makeRows(sheet, columns);
+    const int gaps = static_cast<int>(sheet.rows.size()) * columns - count;
+    const double stretch =
+        std::abs(std::log(static_cast<double>(sheet.width) / static_cast<double>(sheet.height)));
     if (columns == 1 || stretch < bestStretch || (stretch == bestStretch && gaps < bestGaps)) {
       best = columns;
       bestGaps = gaps;
       bestStretch = stretch;
     }
+    if (sheet.width > 4 * sheet.height) break;  // more columns only make it wider
   }
-  return best;
-}
-
-std::vector<std::string> linesOf(const std::string& label, const Sheet& sheet) {
-  return wrapText(label, (sheet.tile.width / sheet.dots + 1) / kCharacterDots, kMostLines);
+  makeRows(sheet, best);
 }
 
 Sheet arrange(const std::vector<SheetPicture>& pictures, const ContactSheetParams& params) {
   Sheet sheet;
   sheet.margin = params.margin;
-  sheet.tile.width = params.width;
+  sheet.tileWidth = params.width;
   sheet.dots = std::max(1, params.width / 160);
-  sheet.box = {params.width, static_cast<int>(kTallest * params.width)};
-  for (const SheetPicture& entry : pictures) {
-    sheet.tile.height = std::max(sheet.tile.height, fittedSize(*entry.picture, sheet.box).height);
-    sheet.textLines = std::max(sheet.textLines, static_cast<int>(linesOf(entry.label, sheet).size()));
-  }
-  const int count = static_cast<int>(pictures.size());
-  sheet.columns = params.columns > 0 ? std::min(params.columns, count) : columnsOf(sheet, count);
-  sheet.rows = (count + sheet.columns - 1) / sheet.columns;
+  sheet.tiles = makeTiles(pictures, sheet);
+  if (params.columns == 0)
+    makeNearlySquare(sheet);
+  else
+    makeRows(sheet, std::min(params.columns, static_cast<int>(pictures.size())));
   return sheet;
 }
 
@@ -93,17 +126,19 @@ void place(const Picture& picture, int left, int top, Picture& sheet) {
                 sheet.rgb.data() + sheet.offset(left, top + y));
 }
 
-/// Draws entry i of the sheet; writes to its own tile only.
-void drawTile(const SheetPicture& entry, int i, const Sheet& sheet, Picture& page) {
-  const int left = static_cast<int>(sheet.width(i % sheet.columns));
-  const int top = static_cast<int>(sheet.height(i / sheet.columns));
-  const PictureSize size = fittedSize(*entry.picture, sheet.box);
+/// Draws picture i; writes to its own tile only.
+void drawTile(const Picture& picture, std::size_t i, const Sheet& sheet, Picture& page) {
+  const Tile& tile = sheet.tiles[i];
+  const auto columns = static_cast<std::size_t>(sheet.columns);
+  const Row& row = sheet.rows[i / columns];
+  const int left = sheet.left(static_cast<int>(i % columns));
+  const int bottom = static_cast<int>(row.top) + row.pictureHeight;
   // Standing on its label, so that pictures of different heights share a base line.
-  place(scaledDown(*entry.picture, size), left + (sheet.tile.width - size.width) / 2,
-        top + sheet.tile.height - size.height, page);
-  int y = top + sheet.tile.height + 3 * sheet.dots;
-  for (const std::string& line : linesOf(entry.label, sheet)) {
-    drawText(page, left + (sheet.tile.width - textWidth(line, sheet.dots)) / 2, y, line, sheet.dots, kInk);
+  place(scaledDown(picture, tile.size), left + (sheet.tileWidth - tile.size.width) / 2,
+        bottom - tile.size.height, page);
+  int y = bottom + 3 * sheet.dots;
+  for (const std::string& line : tile.lines) {
+    drawText(page, left + (sheet.tileWidth - textWidth(line, sheet.dots)) / 2, y, line, sheet.dots, kInk);
     y += kLineDots * sheet.dots;
   }
 }
@@ -121,14 +156,13 @@ Result<Picture> contactSheet(const std::vector<SheetPicture>& pictures, const Co
                              const Exec& exec) {
   SHERD_CHECK(checkInput(pictures, params));
   const Sheet sheet = arrange(pictures, params);
-  const std::int64_t width = sheet.width(sheet.columns), height = sheet.height(sheet.rows);
-  if (width * height > kMostPixels)
-    return failure(
-        fmt::format("a sheet of {} pictures would have {} × {} pixels", pictures.size(), width, height),
-        "narrower tiles, or fewer pictures", "width");
-  Picture page = blankPage(static_cast<int>(width), static_cast<int>(height));
+  if (sheet.width * sheet.height > kMostPixels)
+    return failure(fmt::format("a sheet of {} pictures would have {} × {} pixels", pictures.size(),
+                               sheet.width, sheet.height),
+                   "narrower tiles, or fewer pictures", "width");
+  Picture page = blankPage(static_cast<int>(sheet.width), static_cast<int>(sheet.height));
   parallelFor(exec, pictures.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) drawTile(pictures[i], static_cast<int>(i), sheet, page);
+    for (std::size_t i = begin; i < end; ++i) drawTile(*pictures[i].picture, i, sheet, page);
   });
   if (exec.cancelled()) return cancelledError();
   return page;

@@ -27,10 +27,11 @@ struct SheetPicture {
   std::string label;                       ///< "frame 1001, seed 7"; may be empty
 };
 
-/// The sheet, pictures in their order, row by row. All tiles are as high as the highest scaled picture, which
-/// is at most 1.5 times as high as it is wide. Labels are broken into up to four lines; a longer one loses
-/// its middle. Errors: parameters out of range, no pictures, a picture without pixels, a sheet of more than
-/// 2^28 pixels. The same bytes for any number of threads. O(pixels of the pictures and of the sheet).
+/// The sheet, pictures in their order, row by row. A row is as high as its highest picture, which is at most
+/// 1.5 times as high as a tile is wide, and its longest label. Labels are broken into up to four lines; a
+/// longer one loses its middle. Errors: parameters out of range, no pictures, a picture without pixels, a
+/// sheet of more than 2^28 pixels. The same bytes for any number of threads. O(pixels of the pictures and of
+/// the sheet).
 Result<Picture> contactSheet(const std::vector<SheetPicture>& pictures, const ContactSheetParams& params,
                              const Exec& exec);
 

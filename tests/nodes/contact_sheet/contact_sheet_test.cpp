@@ -178,6 +178,14 @@ TEST(ContactSheet, PicturesOfDifferentSizesStandInTheMiddleOnOneLine) {
   EXPECT_EQ(boundsOf(sheet, kBlue), (std::array<int, 4>{276, 10, 283, 159}));
 }
 
+TEST(ContactSheet, ARowIsAsHighAsWhatStandsInIt) {
+  const Picture sheet =
+      mustSheet({entry(plain(100, 100, kRed)), entry(plain(100, 30, kBlue), "frame 2")}, tiles(100, 1));
+  EXPECT_EQ(boundsOf(sheet, kRed), (std::array<int, 4>{10, 10, 109, 109}));
+  EXPECT_EQ(boundsOf(sheet, kBlue), (std::array<int, 4>{10, 120, 109, 149}));
+  EXPECT_EQ(sheet.height, 150 + 3 + 10 + 10);
+}
+
 TEST(ContactSheet, ColumnsMakeTheSheetNearlySquare) {
   const auto sizeOf = [](int count, int columns) {
     const Picture sheet =
