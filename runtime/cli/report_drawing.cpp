@@ -12,7 +12,7 @@
 namespace sherd {
 namespace {
 
-constexpr double kNameDigit = 8.7, kTextDigit = 6.9, kPortDigit = 6.3;  // px per character, wide ones
+constexpr double kNameEm = 16.6, kTextEm = 12.9, kPortEm = 11.2;  // px, bold ones being wider
 constexpr double kLeast = 150, kPortGap = 16, kBody = 48, kPortRow = 17, kMargin = 24, kHeading = 34;
 constexpr int kLongestName = 30, kLongestType = 24, kLongestPort = 16;
 constexpr std::size_t kMostPorts = 40;
@@ -37,7 +37,7 @@ struct DrawnBox {
   }
 };
 
-double portWidth(const DrawnPort& port) { return kPortDigit * shownLength(elided(port.name, kLongestPort)); }
+double portWidth(const DrawnPort& port) { return kPortEm * widthInEms(elided(port.name, kLongestPort)); }
 
 double rowWidth(const std::vector<DrawnPort>& ports) {
   double width = kPortGap;
@@ -81,9 +81,9 @@ DrawnBox measure(const ReportNode& node, const ReportGroup& group,
   box.outputs = portsOf(node.outputs);
   for (const std::string& name : wiredParams)
     if (box.inputs.size() < kMostPorts) box.inputs.push_back({name, name + ": a parameter", true, 0});
-  const double name = 48 + kNameDigit * shownLength(elided(node.name, kLongestName)) +
-                      (group.runs.size() > 1 ? 16 + kTextDigit * shownLength(countMark(group)) : 0);
-  const double text = 64 + kTextDigit * (shownLength(typeLine(node)) + shownLength(resultLine(group)));
+  const double name = 48 + kNameEm * widthInEms(elided(node.name, kLongestName)) +
+                      (group.runs.size() > 1 ? 16 + kTextEm * widthInEms(countMark(group)) : 0);
+  const double text = 40 + kTextEm * (widthInEms(typeLine(node)) + 1.1 * widthInEms(resultLine(group)));
   box.width = std::max({kLeast, name, text, rowWidth(box.inputs), rowWidth(box.outputs)});
   box.height = kBody + (box.inputs.empty() ? 4 : kPortRow) + (box.outputs.empty() ? 4 : kPortRow);
   placePorts(box.inputs, box.width);

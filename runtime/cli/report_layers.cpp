@@ -10,7 +10,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Large drawings get fewer sweeps: they are looked at piece by piece, but waited for as a whole.
 int sweepsFor(std::size_t cells) {
-  return static_cast<int>(std::clamp<std::size_t>(60000 / (cells + 1), 4, 12));
+  return static_cast<int>(std::clamp<std::size_t>(60000 / (cells + 1), 4, 32));
 }
 
 /// The boxes so that each comes after all that it depends on. Where only loops are left, the first box that

@@ -174,7 +174,7 @@ const char* const kReportScript = R"js(
   let zoom = 1;
   function setZoom(wanted) {
     const middle = (scroll.scrollTop + scroll.clientHeight / 2) / zoom, centre = (scroll.scrollLeft + scroll.clientWidth / 2) / zoom;
-    zoom = Math.min(3, Math.max(0.02, wanted));
+    zoom = Math.min(3, Math.max(0.005, wanted));
     drawing.setAttribute("width", width * zoom);
     drawing.setAttribute("height", height * zoom);
     scroll.scrollTop = middle * zoom - scroll.clientHeight / 2;

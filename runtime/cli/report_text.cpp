@@ -86,6 +86,23 @@ int shownLength(std::string_view text) {
   return length;
 }
 
+double widthInEms(std::string_view text) {
+  double width = 0;
+  for (const std::string_view character : charactersOf(text)) {
+    const char c = character.front();
+    const auto isOneOf = [c](std::string_view set) { return set.find(c) != std::string_view::npos; };
+    if (character.size() > 1)
+      width += isWide(character) ? 1.05 : 0.75;
+    else if (isOneOf("ijl.,:;'|!()[]ftr/ -I"))
+      width += 0.42;
+    else if (isOneOf("mwMW@%=<>+~#_&^"))
+      width += 0.95;
+    else
+      width += c >= 'A' && c <= 'Z' ? 0.76 : 0.635;
+  }
+  return width;
+}
+
 std::string elided(const std::string& text, int most) {
   if (shownLength(text) <= most) return text;
   const auto characters = charactersOf(text);

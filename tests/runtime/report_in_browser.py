@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Looks at reports in headless Chromium, as a user would: report_in_browser.py DIRECTORY.
 
 DIRECTORY holds fine.html, failed.html, hostile.html, large.html and empty.html (slow_report_test.cpp writes them).
@@ -66,11 +66,15 @@ class Page:
         """No errors in the console, and nothing loaded from outside of the page."""
         for line in self.browser.get_log("browser"):
             self.check(False, "the console says: " + line["message"])
+        asked = []
         for entry in self.browser.get_log("performance"):
             message = json.loads(entry["message"])["message"]
-            if message["method"] != "Network.requestWillBeSent":
+            # The browser's own pages load things, too.
+            if message["method"] != "Network.requestWillBeSent" or not message["params"]["documentURL"].endswith("/" + self.name):
                 continue
-            url = message["params"]["request"]["url"]
+            asked.append(message["params"]["request"]["url"])
+        self.check(asked, "the log of what is loaded doesn't have the page itself")
+        for url in asked:
             self.check(url.startswith("data:") or url.endswith("/" + self.name), "the page asks for " + url[:200])
 
 

@@ -72,6 +72,13 @@ TEST(ReportText, EscapesAndShortens) {
   EXPECT_LE(shownLength(elided("日本日本日本日本", 7)), 8);
 }
 
+TEST(ReportText, WidthsGrowWithTheText) {
+  EXPECT_EQ(widthInEms(""), 0);
+  EXPECT_LT(widthInEms("iii"), widthInEms("nnn"));
+  EXPECT_LT(widthInEms("nnn"), widthInEms("WWW"));
+  EXPECT_GT(widthInEms("日本"), 2);
+}
+
 TEST(ReportText, Base64) {
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");

@@ -52,7 +52,7 @@ TEST(SlowReport, WorksInABrowser) {
   write(test::randomReport(2000, 1), "large.html");
   write({}, "empty.html");
 
-  const std::string command = "python3 '" SHERD_SOURCE_DIR "/tests/runtime/report_in_browser.py' '" +
+  const std::string command = "/usr/bin/python3 '" SHERD_SOURCE_DIR "/tests/runtime/report_in_browser.py' '" +
                               directory.path().string() + "' 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   ASSERT_NE(pipe, nullptr);
