@@ -14,9 +14,11 @@ NodeType cvdNode();
 NodeType tessellateNode();
 NodeType exportCrackSurfaceNode();
 NodeType previewNode();
+NodeType contactSheetNode();
 
 }  // namespace sherd
 
 SHERD_NODE_PACK(sherd::loadMeshNode, sherd::tetrahedralizeNode, sherd::embedNode, sherd::simulateNode,
                 sherd::readVdbNode, sherd::weightsNode, sherd::predictDegreeNode, sherd::cvdNode,
-                sherd::tessellateNode, sherd::exportCrackSurfaceNode, sherd::previewNode)
+                sherd::tessellateNode, sherd::exportCrackSurfaceNode, sherd::previewNode,
+                sherd::contactSheetNode)

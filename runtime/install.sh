@@ -1,11 +1,16 @@
 # Sourced by runtime/sherd and tests/run: makes sure that the packages in packages.txt are there.
 # With all of them present neither apt nor sudo is touched. SHERD_NO_INSTALL=1 only prints the command.
 
-sherd_packages() { sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$1"; }
+# sherd_packages FILE [PART]: the packages above the first [part], and those of PART.
+sherd_packages() {
+  sed -e 's/#.*//' "$1" | awk -v part="[${2:-}]" '
+    /^\[/ { other = $0 != part; next }
+    NF && !other'
+}
 
 sherd_missing_packages() {
   local package
-  for package in $(sherd_packages "$1"); do
+  for package in $(sherd_packages "$@"); do
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || echo "$package"
   done
 }
@@ -27,9 +32,10 @@ sherd_apt_get() {
   rm -f "$log"
 }
 
+# sherd_install_packages FILE [PART]
 sherd_install_packages() {
   local missing
-  missing=$(sherd_missing_packages "$1" | tr '\n' ' ')
+  missing=$(sherd_missing_packages "$@" | tr '\n' ' ')
   [ -z "$missing" ] && return 0
   SHERD_SUDO=
   [ "$(id -u)" = 0 ] || SHERD_SUDO=sudo

@@ -53,10 +53,4 @@ Colour energyColour(float t) {
   return fromOklch(c[0], c[1], c[2]);
 }
 
-std::uint8_t toSrgb(float linear) {
-  const float x = std::clamp(linear, 0.f, 1.f);
-  const float s = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
-  return static_cast<std::uint8_t>(std::lround(255 * s));
-}
-
 }  // namespace sherd

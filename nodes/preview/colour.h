@@ -1,14 +1,10 @@
-// Colours: linear light inside, sRGB outside, Oklab (Ottosson 2020) where they have to look evenly spaced.
+// The colours of what is shown: Oklab (Ottosson 2020) where they have to look evenly spaced.
 #pragma once
 
-#include <Eigen/Core>
-#include <cstdint>
-
+#include "pictures/light.h"
 #include "types/vec.h"
 
 namespace sherd {
-
-using Colour = Eigen::Vector3f;  ///< linear RGB with sRGB primaries
 
 /// From lightness [0, 1], chroma [0, 0.3] and hue (turns). Clamped to what sRGB shows.
 Colour fromOklch(float lightness, float chroma, float hue);
@@ -20,8 +16,5 @@ Colour crackColour(std::size_t i);
 
 /// Perceptually ordered from dark indigo (0) over red to pale yellow (1).
 Colour energyColour(float t);
-
-/// Linear [0, 1] to an sRGB byte.
-std::uint8_t toSrgb(float linear);
 
 }  // namespace sherd

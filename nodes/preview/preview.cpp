@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "pictures/label.h"
 #include "preview/camera.h"
-#include "preview/label.h"
 #include "preview/scene.h"
 #include "preview/shading.h"
 #include "preview/soups.h"
@@ -67,38 +67,47 @@ Result<std::vector<Panel>> makePanels(const Fragments& f, const EnergyField* ene
   return panels;
 }
 
-void drawLegend(Canvas& canvas, const PanelFrame& frame, const EnergyScale& scale, int dots) {
-  const int width = frame.width / 2, height = 5 * dots, left = frame.left + (frame.width - width) / 2;
-  const int top = frame.top + frame.height - 18 * dots - height;
-  for (int x = 0; x < width; ++x)
-    for (int y = 0; y < height; ++y)
-      canvas.at(left + x, top + y) = energyColour(static_cast<float>(x) / static_cast<float>(width - 1));
-  const std::string low = fmt::format("{:.1e}", scale.low), high = fmt::format("{:.1e}", scale.high);
-  const int below = top + height + 2 * dots;
-  drawText(canvas, left, below, low, dots, kInk);
-  drawText(canvas, left + width - textWidth(high, dots), below, high, dots, kInk);
-}
+/// The bar that shows what the energy's colours stand for, and its two ends in words below it.
+struct Legend {
+  int left = 0, top = 0, width = 0, height = 0, dots = 1;
 
-void annotate(Canvas& canvas, const PanelFrame& frame, const Panel& panel) {
+  static Legend in(const PanelFrame& frame, int dots) {
+    const int width = frame.width / 2, height = 5 * dots;
+    return {frame.left + (frame.width - width) / 2, frame.top + frame.height - 18 * dots - height, width,
+            height, dots};
+  }
+  void draw(Picture& picture, const EnergyScale& scale) const {
+    for (int x = 0; x < width; ++x) {
+      const Rgb colour = toRgb(energyColour(static_cast<float>(x) / static_cast<float>(width - 1)));
+      for (int y = 0; y < height; ++y) paint(picture, left + x, top + y, colour);
+    }
+    const std::string low = fmt::format("{:.1e}", scale.low), high = fmt::format("{:.1e}", scale.high);
+    const int below = top + height + 2 * dots;
+    drawText(picture, left, below, low, dots, toRgb(kInk));
+    drawText(picture, left + width - textWidth(high, dots), below, high, dots, toRgb(kInk));
+  }
+};
+
+void annotate(Picture& picture, const PanelFrame& frame, const Panel& panel) {
   const int dots = std::max(1, std::min(frame.width / 220, frame.height / 200));
   const int x = frame.left + (frame.width - textWidth(panel.title, dots)) / 2;
-  drawText(canvas, x, frame.top + 6 * dots, panel.title, dots, kInk);
+  drawText(picture, x, frame.top + 6 * dots, panel.title, dots, toRgb(kInk));
   if (panel.scale && panel.scale->high > 0 && frame.height > 60 * dots)
-    drawLegend(canvas, frame, *panel.scale, dots);
+    Legend::in(frame, dots).draw(picture, *panel.scale);
 }
 
-Image toImage(const Canvas& canvas) {
-  Image image{canvas.width, canvas.height, {}};
-  image.rgb.reserve(3 * canvas.pixels.size());
+Picture toPicture(const Canvas& canvas) {
+  Picture picture{canvas.width, canvas.height, {}};
+  picture.rgb.reserve(3 * canvas.pixels.size());
   for (const Colour& pixel : canvas.pixels)
-    for (int c = 0; c < 3; ++c) image.rgb.push_back(toSrgb(pixel[c]));
-  return image;
+    for (const std::uint8_t byte : toRgb(pixel)) picture.rgb.push_back(byte);
+  return picture;
 }
 
 }  // namespace
 
-Result<Image> renderPreview(const Fragments& f, const EnergyField* energy, const PreviewParams& params,
-                            const Exec& exec) {
+Result<Picture> renderPreview(const Fragments& f, const EnergyField* energy, const PreviewParams& params,
+                              const Exec& exec) {
   SHERD_CHECK(checkInput(f, energy, params));
   SHERD_ASSIGN(const std::vector<Panel> panels, makePanels(f, energy, params));
   const int count = static_cast<int>(panels.size());
@@ -111,16 +120,18 @@ Result<Image> renderPreview(const Fragments& f, const EnergyField* energy, const
 
   Canvas canvas{params.width, params.height, {}};
   canvas.pixels.resize(static_cast<std::size_t>(params.width) * static_cast<std::size_t>(params.height));
-  for (int p = 0; p < count; ++p) {
+  const auto frameOf = [&](int p) {
     const int left = params.width * p / count, right = params.width * (p + 1) / count;
-    const PanelFrame frame{left, 0, right - left, params.height};
-    const Panel& panel = panels[static_cast<std::size_t>(p)];
-    drawPanel(panel.scene, camera, frame, params.samples, canvas, exec);
+    return PanelFrame{left, 0, right - left, params.height};
+  };
+  for (int p = 0; p < count; ++p) {
+    drawPanel(panels[static_cast<std::size_t>(p)].scene, camera, frameOf(p), params.samples, canvas, exec);
     if (exec.cancelled()) return cancelledError();
-    annotate(canvas, frame, panel);
     exec.progress(static_cast<double>(p + 1) / count);
   }
-  return toImage(canvas);
+  Picture picture = toPicture(canvas);
+  for (int p = 0; p < count; ++p) annotate(picture, frameOf(p), panels[static_cast<std::size_t>(p)]);
+  return picture;
 }
 
 }  // namespace sherd

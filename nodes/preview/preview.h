@@ -7,22 +7,15 @@
 // the picture is the same for any number of threads.
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <vector>
 
 #include "base/exec.h"
 #include "base/result.h"
 #include "types/fields.h"
 #include "types/fragments.h"
+#include "types/picture.h"
 
 namespace sherd {
-
-/// Rows from the top, three bytes (sRGB) per pixel.
-struct Image {
-  int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;
-};
 
 struct PreviewParams {
   std::string file;  ///< the PNG; its directory is created where it is missing
@@ -37,10 +30,7 @@ struct PreviewParams {
 /// version of it. The energy panel shows the energy's density, J/m³, on a logarithmic scale up to its 99.5th
 /// percentile, over at most four decades. Fragments and energy must have their tetrahedra and surface.
 /// Errors: parameters out of range, no pieces, Embree fails. Cost O(pixels · samples · log triangles).
-Result<Image> renderPreview(const Fragments& fragments, const EnergyField* energy,
-                            const PreviewParams& params, const Exec& exec);
-
-/// Writes `image` as a PNG, whole or not at all; a file that holds the same picture already is left alone.
-Result<void> writePng(const Image& image, const std::string& file);
+Result<Picture> renderPreview(const Fragments& fragments, const EnergyField* energy,
+                              const PreviewParams& params, const Exec& exec);
 
 }  // namespace sherd

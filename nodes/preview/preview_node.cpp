@@ -1,4 +1,5 @@
 #include "graph/node_type.h"
+#include "pictures/png_file.h"
 #include "preview/preview.h"
 
 namespace sherd {
@@ -25,13 +26,15 @@ NodeType previewNode() {
            .max = 4,
            .help = "how far apart: each piece moves by this share of its distance from the body's centre"})
       .output<std::string>("file", "path of the PNG")
+      .output<Picture>("picture", "the picture itself, for a ContactSheet")
       .writesFiles()
       .run([](const Params& params, NodeIo& io) -> Result<void> {
-        SHERD_ASSIGN(const Image image, renderPreview(*io.in<Fragments>("pieces"),
-                                                      io.in<EnergyField>("energy").get(), params, io.exec()));
-        SHERD_CHECK(writePng(image, params.file));
+        SHERD_ASSIGN(Picture picture, renderPreview(*io.in<Fragments>("pieces"),
+                                                    io.in<EnergyField>("energy").get(), params, io.exec()));
+        SHERD_CHECK(writePng(picture, params.file));
         io.wrote(params.file);
         io.out("file", params.file);
+        io.out("picture", std::move(picture));
         return {};
       });
 }

@@ -27,8 +27,9 @@ const std::map<std::string, Names> kLayers{
     {"runtime/cli", {"plugin", "eval", "graph", "base"}},
     {"nodes/types", {"base"}},
     {"nodes/geometry", {"types", "base"}},
+    {"nodes/pictures", {"types", "base"}},
 };
-const Names kStepLayers{"geometry", "types", "base"};
+const Names kStepLayers{"geometry", "pictures", "types", "base"};
 
 /// Steps that may include the contract of another, <step>/<step>.h, and of which. Acyclic: each only names
 /// steps that stand above it.
@@ -36,6 +37,7 @@ const std::vector<std::pair<std::string, Names>> kContracts{
     {"load_mesh", {}},           {"tetrahedralize", {}}, {"embed", {}},   {"rigid", {}},
     {"simulate", {"rigid"}},     {"beta", {}},           {"weights", {}}, {"cvd", {}},
     {"predict_degree", {"cvd"}}, {"tessellate", {}},     {"export", {}},  {"preview", {}},
+    {"contact_sheet", {}},
 };
 
 /// Libraries, by the beginning of the include, and the beginnings of the paths that may include them.
@@ -57,7 +59,7 @@ const std::vector<std::pair<Names, Names>> kLibraries{
     {{"cholmod.h", "suitesparse/", "cblas.h", "Eigen/CholmodSupport"}, {"nodes/embed/", "nodes/simulate/"}},
     {{"Spectra/"}, {"nodes/embed/"}},
     {{"embree3/"}, {"nodes/geometry/", "nodes/preview/"}},
-    {{"png.h"}, {"nodes/preview/"}},
+    {{"png.h"}, {"nodes/pictures/"}},
     {{"Eigen/"}, {"nodes/"}},
     {{"nlohmann/"}, {"runtime/graph/", "runtime/cli/", "nodes/export/"}},
 };

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "base/parallel.h"
+#include "pictures/png_file.h"
 #include "preview/colour.h"
 #include "preview/soups.h"
 #include "support/fragment_families.h"
@@ -39,7 +40,7 @@ PreviewParams small() {
 }
 
 /// Distinct colours among the pixels of columns [begin, end).
-std::size_t coloursIn(const Image& image, int begin, int end) {
+std::size_t coloursIn(const Picture& image, int begin, int end) {
   std::set<std::array<std::uint8_t, 3>> seen;
   for (int y = 0; y < image.height; ++y)
     for (int x = begin; x < end; ++x) {
@@ -50,7 +51,7 @@ std::size_t coloursIn(const Image& image, int begin, int end) {
 }
 
 /// Sum over columns [begin, end) of how far each pixel is from grey.
-double colourfulness(const Image& image, int begin, int end) {
+double colourfulness(const Picture& image, int begin, int end) {
   double sum = 0;
   for (int y = 0; y < image.height; ++y)
     for (int x = begin; x < end; ++x) {
@@ -61,10 +62,10 @@ double colourfulness(const Image& image, int begin, int end) {
   return sum;
 }
 
-Image mustRender(const Fragments& f, const EnergyField* energy, const PreviewParams& params) {
+Picture mustRender(const Fragments& f, const EnergyField* energy, const PreviewParams& params) {
   auto image = renderPreview(f, energy, params, Exec{});
   EXPECT_TRUE(image.ok()) << image.error().text();
-  return image.ok() ? *image : Image{};
+  return image.ok() ? *image : Picture{};
 }
 
 TEST(Preview, RefusesWhatItCannotDraw) {
@@ -89,7 +90,7 @@ TEST(Preview, RefusesWhatItCannotDraw) {
 TEST(Preview, PanelsShowBodyPiecesAndEnergy) {
   const Fragments f = test::slicedBox(3);
   const EnergyField energy = energyOn(f.tets->surface);
-  const Image two = mustRender(f, nullptr, small()), three = mustRender(f, &energy, small());
+  const Picture two = mustRender(f, nullptr, small()), three = mustRender(f, &energy, small());
   ASSERT_EQ(two.rgb.size(), 3u * 240 * 96);
   ASSERT_EQ(three.rgb.size(), 3u * 240 * 96);
   EXPECT_GT(coloursIn(two, 0, 120), 50u);
@@ -101,7 +102,7 @@ TEST(Preview, PanelsShowBodyPiecesAndEnergy) {
 }
 
 TEST(Preview, UnbrokenBodyIsDrawn) {
-  const Image image = mustRender(test::slicedBox(1), nullptr, small());
+  const Picture image = mustRender(test::slicedBox(1), nullptr, small());
   EXPECT_GT(coloursIn(image, 120, 240), 50u);
 }
 
@@ -110,10 +111,10 @@ TEST(Preview, SizeAndPlaceOfTheBodyDoNotMatter) {
   const auto boxAt = [&](const Vec3& low, double scale) {
     return test::slices(test::boxMesh(low, low + scale * size), {low.x() + 0.75 * scale});
   };
-  const Image reference = mustRender(boxAt(Vec3::Zero(), 1), nullptr, small());
+  const Picture reference = mustRender(boxAt(Vec3::Zero(), 1), nullptr, small());
   for (const auto& [low, scale] :
        {std::pair(Vec3(1e-6, 0, 0), 1e-6), std::pair(Vec3(1e6, -1e6, 1e6), 1024.0)}) {
-    const Image image = mustRender(boxAt(low, scale), nullptr, small());
+    const Picture image = mustRender(boxAt(low, scale), nullptr, small());
     ASSERT_EQ(image.rgb.size(), reference.rgb.size());
     std::size_t differing = 0;
     for (std::size_t i = 0; i < image.rgb.size(); ++i)
@@ -125,7 +126,7 @@ TEST(Preview, SizeAndPlaceOfTheBodyDoNotMatter) {
 TEST(Preview, SameBytesForAnyNumberOfThreads) {
   const Fragments f = test::slicedBox(4);
   const EnergyField energy = energyOn(f.tets->surface);
-  Image images[2];
+  Picture images[2];
   for (int i = 0; i < 2; ++i) {
     setThreadLimit(i + 1);
     inArena([&] { images[i] = mustRender(f, &energy, small()); });
@@ -145,7 +146,7 @@ TEST(Preview, CancelledIsAnError) {
 }
 
 TEST(Preview, PngDecodesToTheSamePicture) {
-  const Image image = mustRender(test::slicedBox(2), nullptr, small());
+  const Picture image = mustRender(test::slicedBox(2), nullptr, small());
   const fs::path root = fs::temp_directory_path() / ("sherd_preview_" + std::to_string(::getpid()));
   const std::string file = (root / "new" / "picture.png").string();
   ASSERT_TRUE(writePng(image, file).ok());

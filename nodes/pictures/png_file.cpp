@@ -1,22 +1,22 @@
+#include "pictures/png_file.h"
+
 #include <png.h>
 
 #include <filesystem>
-#include <string>
 
 #include "base/atomic_file.h"
-#include "preview/preview.h"
 
 namespace sherd {
 
-Result<void> writePng(const Image& image, const std::string& file) {
+Result<void> writePng(const Picture& picture, const std::string& file) {
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
   header.format = PNG_FORMAT_RGB;
-  header.width = static_cast<png_uint_32>(image.width);
-  header.height = static_cast<png_uint_32>(image.height);
+  header.width = static_cast<png_uint_32>(picture.width);
+  header.height = static_cast<png_uint_32>(picture.height);
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
   std::string bytes(size, '\0');
-  if (png_image_write_to_memory(&header, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr) == 0)
+  if (png_image_write_to_memory(&header, bytes.data(), &size, 0, picture.rgb.data(), 0, nullptr) == 0)
     return failure(std::string("the picture cannot be encoded as PNG: ") + header.message);
   bytes.resize(size);
   const std::filesystem::path directory = std::filesystem::path(file).parent_path();
