@@ -21,7 +21,6 @@ struct ValueType {
   std::string name;
   Digest (*digest)(const void*);      ///< of the content, the name included
   std::size_t (*bytes)(const void*);  ///< in memory, about
-  std::size_t objectBytes = 0;        ///< sizeof: packs that disagree on it are built against other headers
   int archiveVersion = 0;             ///< of the bytes on disk
   /// Null where the type has no saveValue and loadValue: its values are then never kept on disk.
   void (*save)(ArchiveWriter&, const void*) = nullptr;
@@ -126,7 +125,7 @@ std::shared_ptr<const void> load(ArchiveReader& from) {
 template <class T>
 const ValueType& valueType() {
   static const ValueType type = [] {
-    ValueType made{valueTypeName<T>(), &detail::digestOf<T>, &detail::bytesOf<T>, sizeof(T)};
+    ValueType made{valueTypeName<T>(), &detail::digestOf<T>, &detail::bytesOf<T>};
     if constexpr (ScalarValue<T>) {
       made.archiveVersion = 1;
       made.save = &detail::save<T>;

@@ -39,9 +39,6 @@ Json namedObject(Json values) {
       {"type", "object"}, {"propertyNames", reference("name")}, {"additionalProperties", std::move(values)}};
 }
 
-// ---- parameters
-// -----------------------------------------------------------------------------------------------
-
 /// A value of the type, or the string "${x}".
 Json orVariable(const char* type) {
   return {
@@ -93,9 +90,6 @@ Json paramSchema(const ParamInfo& info) {
     std::visit([&](const auto& value) { schema["default"] = value; }, info.fallback);
   return schema;
 }
-
-// ---- nodes
-// ----------------------------------------------------------------------------------------------------
 
 Json linkSchema(const std::string& about) {
   return described(about, {{"type", "string"}, {"pattern", kLink}});
@@ -208,9 +202,6 @@ Json nodesSchema(const Registry& registry) {
   schema["minProperties"] = 1;
   return schema;
 }
-
-// ---- the graph
-// ------------------------------------------------------------------------------------------------
 
 Json definitions() {
   Json all;

@@ -69,6 +69,9 @@ struct PortInfo {
   std::string help;
   const ValueType* value = nullptr;  ///< how its values are hashed, sized, saved and loaded
   bool gathers = false;  ///< an input that takes all frames and wedges of what is wired to it, in their order
+  /// sizeof of the values. Not in ValueType, which the loader may make one object of for all packs, whatever
+  /// headers they are built against.
+  std::size_t valueBytes = 0;
 };
 
 /// Something inside a node that can't be stopped at once: a library's call.
@@ -205,6 +208,7 @@ class NodeBuilder {
   template <class T>
   NodeBuilder& output(std::string name, std::string help) {
     type_.outputs.push_back({std::move(name), valueTypeName<T>(), false, std::move(help), &valueType<T>()});
+    type_.outputs.back().valueBytes = sizeof(T);
     return *this;
   }
   NodeBuilder& implementation(int number) {
@@ -304,6 +308,7 @@ class NodeBuilder {
   template <class T>
   NodeBuilder& addInput(std::string name, std::string help, bool required) {
     type_.inputs.push_back({std::move(name), valueTypeName<T>(), required, std::move(help), &valueType<T>()});
+    type_.inputs.back().valueBytes = sizeof(T);
     return *this;
   }
   NodeBuilder& add(std::string name, ParamKind kind, ParamValue fallback, NumberOptions options,

@@ -40,12 +40,11 @@ Result<void> checkTable(const NodeType& type) {
 Result<void> Registry::checkValues(const NodeType& type) const {
   for (const auto* ports : {&type.inputs, &type.outputs})
     for (const PortInfo& port : *ports) {
-      const auto known = port.value == nullptr ? values_.end() : values_.find(port.type);
-      if (known == values_.end() || known->second.objectBytes == port.value->objectBytes) continue;
+      const auto known = port.valueBytes == 0 ? values_.end() : values_.find(port.type);
+      if (known == values_.end() || known->second.bytes == port.valueBytes) continue;
       return failure("node type " + inQuotes(type.name) + ": its " + port.type + " has " +
-                         std::to_string(port.value->objectBytes) + " bytes, that of " +
-                         inQuotes(known->second.nodeType) + " has " +
-                         std::to_string(known->second.objectBytes),
+                         std::to_string(port.valueBytes) + " bytes, that of " +
+                         inQuotes(known->second.nodeType) + " has " + std::to_string(known->second.bytes),
                      "build both node packs against the same headers");
     }
   return {};
@@ -56,8 +55,7 @@ Result<void> Registry::add(NodeType type) {
   SHERD_CHECK(checkValues(type));
   for (const auto* ports : {&type.inputs, &type.outputs})
     for (const PortInfo& port : *ports)
-      if (port.value != nullptr)
-        values_.try_emplace(port.type, KnownValue{port.value->objectBytes, type.name});
+      if (port.value != nullptr) values_.try_emplace(port.type, KnownValue{port.valueBytes, type.name});
   const auto found = types_.find(type.name);
   if (found == types_.end()) {
     std::string name = type.name;

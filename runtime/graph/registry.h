@@ -23,7 +23,7 @@ class Registry {
 
  private:
   struct KnownValue {
-    std::size_t objectBytes = 0;
+    std::size_t bytes = 0;
     std::string nodeType;  ///< that had it first
   };
   Result<void> checkValues(const NodeType& type) const;

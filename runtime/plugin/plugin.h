@@ -64,12 +64,13 @@ inline constexpr std::uint32_t kPluginAbi = 2;
       SHERD_SANITIZER_IDENTITY SHERD_VECTOR_IDENTITY
 
 /// A class that crosses the border and its size: catches a change of layout that forgot to raise kPluginAbi.
-/// That values on wires agree is for the registry to see (ValueType::objectBytes).
+/// That values on wires agree is for the registry to see (PortInfo::valueBytes).
 struct PluginLayout {
   const char* name;
   std::uint64_t bytes;
 };
-inline constexpr PluginLayout kLayouts[] = {
+// Not inline: the loader makes one object of inline variables, and a pack would hand out the program's sizes.
+constexpr PluginLayout kLayouts[] = {
     {"NodeType", sizeof(NodeType)},
     {"NodeIo", sizeof(NodeIo)},
     {"PortInfo", sizeof(PortInfo)},
@@ -88,8 +89,8 @@ inline constexpr PluginLayout kLayouts[] = {
     {"Registry", sizeof(Registry)},
 };
 
-/// What a pack exports as the C symbol `sherd_pack_handshake`. The order of the fields never changes; those
-/// behind `abi` may differ in another ABI, and are read only when it is the program's.
+/// What a pack exports as the C symbol `sherd_pack_handshake`. `magic` and `abi` stay the first fields; the
+/// others may differ in another ABI, and are read only when it is the program's.
 struct PluginHandshake {
   std::uint32_t magic;          ///< kPluginMagic
   std::uint32_t abi;            ///< kPluginAbi
@@ -99,8 +100,8 @@ struct PluginHandshake {
   std::uint64_t layoutCount;
 };
 inline constexpr std::uint32_t kPluginMagic = 0x73685244;  // "shRD"
-inline constexpr PluginHandshake kHandshake{kPluginMagic,  kPluginAbi, SHERD_BUILD_IDENTITY,
-                                            SHERD_VERSION, kLayouts,   std::size(kLayouts)};
+constexpr PluginHandshake kHandshake{kPluginMagic,  kPluginAbi, SHERD_BUILD_IDENTITY,
+                                     SHERD_VERSION, kLayouts,   std::size(kLayouts)};
 
 /// What a pack exports as the C symbol `sherd_pack_register`: adds its types, or says why not and returns
 /// false.

@@ -9,7 +9,7 @@ namespace {
 
 struct NoParams {};
 
-sherd::NodeType packedNode() {
+[[maybe_unused]] sherd::NodeType packedNode() {
   return sherd::NodeBuilder<NoParams>("Packed", 1, "Comes from a pack.")
       .output<std::int64_t>("value", "42")
       .run([](const NoParams&, sherd::NodeIo& io) -> sherd::Result<void> {
@@ -20,38 +20,36 @@ sherd::NodeType packedNode() {
 
 }  // namespace
 
-#if defined(PACK_OTHER_VALUE)
-namespace {
-/// A value type whose layout differs from pack to pack.
+#if defined(PACK_SHAPE) || defined(PACK_OTHER_SHAPE)
+namespace shapes {
+/// A value type of one name and, as after an update of its header, two layouts.
 struct Shape {
   static constexpr const char* typeName = "Shape";
+#if defined(PACK_SHAPE)
   std::int64_t numbers[3];
-};
-struct OlderShape {
-  static constexpr const char* typeName = "Shape";
+#else
   std::int64_t numbers[2];
+#endif
 };
-template <class S>
-void hashValue(sherd::Hasher& hasher, const S& shape) {
+inline void hashValue(sherd::Hasher& hasher, const Shape& shape) {
   for (const std::int64_t number : shape.numbers) hasher.add(number);
 }
-template <class S>
-std::size_t byteSize(const S&) {
-  return sizeof(S);
-}
+inline std::size_t byteSize(const Shape&) { return sizeof(Shape); }
+}  // namespace shapes
 
-sherd::NodeType makeShapeNode() {
-  return sherd::NodeBuilder<NoParams>("MakeShape", 1, "Makes a shape.")
-      .output<Shape>("shape", "a shape")
-      .run([](const NoParams&, sherd::NodeIo&) -> sherd::Result<void> { return {}; });
-}
-sherd::NodeType takeShapeNode() {
-  return sherd::NodeBuilder<NoParams>("TakeShape", 1, "Takes a shape of other headers.")
-      .input<OlderShape>("shape", "a shape")
-      .run([](const NoParams&, sherd::NodeIo&) -> sherd::Result<void> { return {}; });
+namespace {
+sherd::NodeType shapeNode() {
+#if defined(PACK_SHAPE)
+  sherd::NodeBuilder<NoParams> node("MakeShape", 1, "Makes a shape.");
+  node.output<shapes::Shape>("shape", "a shape");
+#else
+  sherd::NodeBuilder<NoParams> node("TakeShape", 1, "Takes a shape.");
+  node.input<shapes::Shape>("shape", "a shape");
+#endif
+  return node.run([](const NoParams&, sherd::NodeIo&) -> sherd::Result<void> { return {}; });
 }
 }  // namespace
-SHERD_NODE_PACK(packedNode, makeShapeNode, takeShapeNode)
+SHERD_NODE_PACK(shapeNode)
 #elif defined(PACK_GOOD)
 SHERD_NODE_PACK(packedNode)
 #elif defined(PACK_TWICE)
