@@ -18,7 +18,8 @@ constexpr const char* kName =
 constexpr const char* kLink = "^[^.]+(\\.[^.].*)?$";
 constexpr const char* kOneVariable = "^\\$\\{[^{}]+\\}$";
 constexpr const char* kSomeVariable = "\\$\\{";
-constexpr const char* kFrames = "^(-?[0-9]+(-(-?[0-9]+)(x[1-9][0-9]*)?)?|\\$\\{[^{}]+\\})$";
+constexpr const char* kFrames =
+    "^ *-?[0-9]+(--?[0-9]+(x[1-9][0-9]*)?)? *(, *-?[0-9]+(--?[0-9]+(x[1-9][0-9]*)?)? *)*$";
 
 Json reference(const std::string& definition) { return {{"$ref", "#/definitions/" + definition}}; }
 
@@ -258,13 +259,16 @@ Json subgraphsSchema() {
 
 Json fileSchema() {
   const Json nodeNames = {{"type", {"array", "string"}}, {"items", {{"type", "string"}}}};
-  const Json values = {{"type", "array"}, {"minItems", 1}, {"items", reference("variable")}};
+  const Json values = {{"type", "array"},
+                       {"minItems", 1},
+                       {"uniqueItems", true},
+                       {"items", {{"type", {"number", "string", "boolean"}}}}};
   Json schema = closedObject(
       {{"format", formatSchema()},
        {"fps",
         described("frames per second", {{"type", "number"}, {"exclusiveMinimum", 0}, {"default", 24}})},
        {"vars", reference("vars")},
-       {"frames", described("\"first-last\" or \"first-lastxstep\", or one frame",
+       {"frames", described("\"first-last\", \"first-lastxstep\", one frame, or several of these with commas",
                             {{"type", {"string", "integer"}}, {"pattern", kFrames}})},
        {"wedge", described("a list of values for each of these variables", namedObject(values))},
        {"targets", described("names for groups of nodes, for --target", namedObject(nodeNames))},
