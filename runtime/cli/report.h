@@ -25,7 +25,7 @@ struct ReportNode {
   std::string name;     ///< with the subgraphs that it is in: "break/cells"
   std::string context;  ///< "frame 1001, seed 7"; empty where the node doesn't depend on any
   std::string type, help;
-  std::string state;  ///< "run", "hit", "failed", "skipped" or "not needed"
+  std::string state;  ///< "run", "hit", "failed" or "skipped"; all else is shown as "not needed"
   std::string why;    ///< why it ran: "young 2e6 → 3e6"
   double ms = 0;
   int threads = 0;
@@ -37,9 +37,11 @@ struct ReportNode {
   std::vector<std::string> written;   ///< files, by absolute path
 };
 
+/// Those of different frames and wedges are drawn as one.
 struct ReportWire {
-  int from = 0, to = 0;  ///< entries of ReportData::nodes
-  std::string output, input;
+  int from = 0, to = 0;  ///< entries of ReportData::nodes, of the same graph
+  std::string output;
+  std::string input;  ///< a port or a parameter
 };
 
 struct ReportData {
@@ -49,14 +51,16 @@ struct ReportData {
   double ms = 0;
   std::vector<ReportNode> nodes;
   std::vector<ReportWire> wires;
-  std::vector<std::string>
-      pictures;  ///< PNG files to show, by absolute path; those that are gone are left out
+  /// PNG files to show, by absolute path. Those that are gone are left out; so are, and the page says how
+  /// many, those beyond 20 MB in all.
+  std::vector<std::string> pictures;
 };
 
-/// The whole page. Loads nothing from anywhere: style, script and pictures are in it. Texts from graphs and
-/// files are escaped. O(nodes + wires + bytes of the pictures).
+/// The whole page, the same for the same data. Loads nothing from anywhere: style, script and pictures are in
+/// it. Texts from graphs and files are escaped. O((nodes + wires) log + bytes of the pictures).
 std::string reportPage(const ReportData& data);
-/// Writes it, whole or not at all.
+/// Writes it, whole or not at all, and creates its directory where that is missing. The error says what is in
+/// the way.
 Result<void> writeReport(const ReportData& data, const std::string& file);
 
 }  // namespace sherd
