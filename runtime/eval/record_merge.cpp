@@ -73,9 +73,10 @@ std::vector<Frame> newestFrames(const std::vector<Input>& inputs, std::uint64_t 
     eachFrame(input.bytes(), input.begin(), [&](Frame frame) {
       all.push_back({mixed(keyOf(frame)), timeOf(frame), frame});
     });
-  std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
+  const auto older = [](const Candidate& a, const Candidate& b) {
     return std::tie(a.bits, a.time) < std::tie(b.bits, b.time);
-  });
+  };
+  std::stable_sort(all.begin(), all.end(), older);
   std::vector<Candidate> newest;
   for (const Candidate& candidate : all) {
     if (!newest.empty() && newest.back().bits == candidate.bits &&
@@ -91,6 +92,7 @@ std::vector<Frame> newestFrames(const std::vector<Input>& inputs, std::uint64_t 
     std::size_t dropped = 0;
     while (bytes > mostBytes) bytes -= sizeOf(newest[dropped++].frame);
     newest.erase(newest.begin(), newest.begin() + static_cast<std::ptrdiff_t>(dropped));
+    std::sort(newest.begin(), newest.end(), older);
   }
   std::vector<Frame> frames;
   frames.reserve(newest.size());

@@ -104,12 +104,17 @@ template Frame MergedSegment::search<recipeOf>(const Index&, const Digest&) cons
 /// Lays out and writes one merged segment.
 class MergedWriter {
  public:
-  explicit MergedWriter(std::span<const Frame> frames) : frames_(frames.begin(), frames.end()) {
-    std::sort(frames_.begin(), frames_.end(),
-              [](Frame a, Frame b) { return mixed(keyOf(a)) < mixed(keyOf(b)); });
+  explicit MergedWriter(std::span<const Frame> frames) {
+    std::vector<std::pair<std::uint64_t, Frame>> sorted;
+    sorted.reserve(frames.size());
+    for (const Frame frame : frames) sorted.emplace_back(mixed(keyOf(frame)), frame);
+    const auto byBits = [](const auto& a, const auto& b) { return a.first < b.first; };
+    if (!std::is_sorted(sorted.begin(), sorted.end(), byBits))
+      std::sort(sorted.begin(), sorted.end(), byBits);
     std::uint64_t offset = 0;
-    for (const Frame frame : frames_) {
-      keys_.push_back({mixed(keyOf(frame)), offset});
+    for (const auto& [bits, frame] : sorted) {
+      frames_.push_back(frame);
+      keys_.push_back({bits, offset});
       if (kindOf(frame) == FrameKind::Result) recipes_.push_back({mixed(recipeOf(frame)), offset});
       offset += sizeOf(frame);
     }

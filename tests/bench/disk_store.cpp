@@ -18,24 +18,36 @@ fs::path freshDirectory(const std::string& name) {
   return path;
 }
 
+/// As spread as digests are, and quicker to make.
+Digest key(std::uint64_t number) {
+  const Rng rng(number);
+  return {rng.bitsAt(0), rng.bitsAt(1)};
+}
+
+void fill(DiskStore& store, std::uint64_t count) {
+  for (std::uint64_t i = 0; i < count; ++i)
+    store.record({key(i), key(i % 1000), 0.01, {{{i, i}, 8}}, {}, {}});
+}
+
 /// A store of `count` quick results, `merged` or as one process left it.
 fs::path filled(std::uint64_t count, bool merged) {
   const fs::path path = freshDirectory(std::to_string(count) + (merged ? "m" : "y"));
-  const auto store = openStore(path);
-  for (std::uint64_t i = 0; i < count; ++i)
-    store->record({digestOf(i), digestOf(i % 1000), 0.01, {{digestOf(i + 1), 8}}, {}, {}});
-  if (!merged) {
+  fs::path copy = path.string() + "_copy";
+  {
+    const auto store = openStore(path);
+    fill(*store, count);
     store->flush();
-    fs::copy(path, path.string() + "c", fs::copy_options::recursive);
-    return path.string() + "c";
+    if (!merged) fs::copy(path, copy, fs::copy_options::recursive);
   }
-  return path;
+  if (merged) return path;
+  fs::remove_all(path);
+  return copy;
 }
 
 std::vector<Digest> keys(std::uint64_t count, std::uint64_t from) {
   std::vector<Digest> made;
   Rng rng(5);
-  for (int i = 0; i < 4096; ++i) made.push_back(digestOf(from + rng.below(count)));
+  for (int i = 0; i < 4096; ++i) made.push_back(key(from + rng.below(count)));
   return made;
 }
 
@@ -61,9 +73,7 @@ void findOutputs(benchmark::State& state, bool merged, bool hit) {
   const fs::path path = filled(count, true);
   {
     const auto store = openStore(path);
-    if (!merged)
-      for (std::uint64_t i = 0; i < count; ++i)
-        store->record({digestOf(i), digestOf(i % 1000), 0.01, {{digestOf(i + 1), 8}}, {}, {}});
+    if (!merged) fill(*store, count);
     const std::vector<Digest> wanted = keys(count, hit ? 0 : 10'000'000);
     std::vector<OutputRecord> outputs;
     std::size_t i = 0;
@@ -72,10 +82,10 @@ void findOutputs(benchmark::State& state, bool merged, bool hit) {
   }
   fs::remove_all(path);
 }
-BENCHMARK_CAPTURE(findOutputs, young_hit, false, true)->Arg(10'000)->Arg(1'000'000);
-BENCHMARK_CAPTURE(findOutputs, young_miss, false, false)->Arg(10'000)->Arg(1'000'000);
-BENCHMARK_CAPTURE(findOutputs, merged_hit, true, true)->Arg(1'000'000);
-BENCHMARK_CAPTURE(findOutputs, merged_miss, true, false)->Arg(1'000'000);
+BENCHMARK_CAPTURE(findOutputs, young_hit, false, true)->Arg(10'000)->Arg(1'000'000)->Iterations(1'000'000);
+BENCHMARK_CAPTURE(findOutputs, young_miss, false, false)->Arg(10'000)->Arg(1'000'000)->Iterations(1'000'000);
+BENCHMARK_CAPTURE(findOutputs, merged_hit, true, true)->Arg(1'000'000)->Iterations(1'000'000);
+BENCHMARK_CAPTURE(findOutputs, merged_miss, true, false)->Arg(1'000'000)->Iterations(1'000'000);
 
 void open(benchmark::State& state, bool merged) {
   const fs::path path = filled(static_cast<std::uint64_t>(state.range(0)), merged);
@@ -88,15 +98,18 @@ void open(benchmark::State& state, bool merged) {
   fs::remove_all(path);
 }
 BENCHMARK_CAPTURE(open, young, false)->Arg(10'000)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(open, merged, true)->Arg(10'000)->Arg(1'000'000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(open, merged, true)
+    ->Arg(50'000)
+    ->Arg(1'000'000)
+    ->Iterations(20)
+    ->Unit(benchmark::kMillisecond);
 
 void mergeMillion(benchmark::State& state) {
   for (auto _ : state) {
     const fs::path path = freshDirectory("merge");
     auto store = openStore(path);
     state.PauseTiming();
-    for (std::uint64_t i = 0; i < 1'000'000; ++i)
-      store->record({digestOf(i), digestOf(i % 1000), 0.01, {{digestOf(i + 1), 8}}, {}, {}});
+    fill(*store, 1'000'000);
     state.ResumeTiming();
     store.reset();
     state.PauseTiming();
