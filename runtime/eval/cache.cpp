@@ -42,6 +42,13 @@ void Cache::drop(std::list<Entry>::iterator entry) {
   entries_.erase(entry);
 }
 
+void Cache::clear() {
+  const std::lock_guard lock(mutex_);
+  byKey_.clear();
+  entries_.clear();
+  bytes_ = 0;
+}
+
 std::size_t Cache::bytes() const {
   const std::lock_guard lock(mutex_);
   return bytes_;

@@ -41,6 +41,7 @@ class Cache {
   /// Values that live on elsewhere count all the same.
   void insert(CachedResult result);
 
+  void clear();
   std::size_t bytes() const;
   std::size_t size() const;
 

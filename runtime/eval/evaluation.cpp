@@ -93,10 +93,11 @@ void Evaluation::drain() {
     } else if (!settled_.empty()) {
       const int i = settled_.back();
       settled_.pop_back();
-      if (slot(i).state != State::Known || slot(i).reported) continue;
-      slot(i).reported = true;
-      hits.push_back(i);
-      release(i);
+      Slot& s = slot(i);
+      if (s.state != State::Known) continue;
+      if (!s.reported) hits.push_back(i);
+      s.reported = true;
+      if (s.readers == 0) release(i);
     } else {
       break;
     }
@@ -234,7 +235,10 @@ void Evaluation::becomeKnown(int i, Known known) {
     else
       request(i, static_cast<int>(o));
   }
-  if (s.readers == 0) settled_.push_back(i);
+  // With all values there, or nobody to ask for them, it will never run: it can be told of.
+  bool hasAll = true;
+  for (std::size_t o = 0; o < s.outputs.size(); ++o) hasAll = hasAll && has(s, static_cast<int>(o));
+  if (hasAll || s.readers == 0) settled_.push_back(i);
 }
 
 void Evaluation::tellDigests(int i) {
@@ -317,11 +321,13 @@ void Evaluation::skipReaders(int i) {
 
 /// The node will ask for no more values: those that nobody else reads are let go of.
 void Evaluation::release(int i) {
+  if (slot(i).released) return;
+  slot(i).released = true;
   forEachWire(node(i), [&](const Graph::Wire& wire, bool) {
     Slot& source = slot(wire.node);
     if (--source.readers > 0) return;
     for (Output& output : source.outputs) output.value = {};
-    if (source.state == State::Known && !source.reported) settled_.push_back(wire.node);
+    if (source.state == State::Known) settled_.push_back(wire.node);
   });
 }
 

@@ -47,6 +47,7 @@ class Evaluation {
     bool counted = false;  ///< `values` is up to date
     bool ran = false;      ///< in this evaluation
     bool reported = false;
+    bool released = false;  ///< it won't ask for values any more
     int digests = 0;                    ///< wires whose source isn't known
     int values = 0;                     ///< wires that it waits for the values of
     int readers = 0;                    ///< wires that may still ask for its values

@@ -69,7 +69,9 @@ class Checker {
     }
     findTargets();
     reportLoops(graph_, diagnostics_);
-    if (diagnostics_.count() > before) return std::move(graph_);
+    const bool hasTypes = std::all_of(graph_.nodes.begin(), graph_.nodes.end(),
+                                      [](const Graph::Node& node) { return node.type != nullptr; });
+    if (diagnostics_.count() > before || !hasTypes) return std::move(graph_);
     for (Graph::Node& node : graph_.nodes) writeRecipe(node);
     multiply(
         graph_, sweep_, own_,

@@ -214,7 +214,10 @@ TEST_F(Evaluator, FailuresNameTheNodeAndStopWhatNeedsIt) {
   EXPECT_EQ(graph.nameOf(0, goingOn.nodes[0].error->port), "f.a");
   const EvalReport stopping = evaluateNodes(graph, {"y", "z"});
   EXPECT_FALSE(stopping.cancelled);
-  EXPECT_EQ(stateOf(graph, stopping, "z"), "skipped");
+  EXPECT_EQ(stateOf(graph, stopping, "y"), "skipped");
+  EXPECT_EQ(stateOf(graph, stopping, "z"), "hit");  // known before anything could fail
+  cache.clear();
+  EXPECT_EQ(stateOf(graph, evaluateNodes(graph, {"y", "z"}), "z"), "skipped");
 }
 
 TEST_F(Evaluator, AFailureStopsRunningNodes) {

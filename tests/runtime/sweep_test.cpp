@@ -47,14 +47,14 @@ TEST_F(Sweeps, WhatReadsTheFrameIsThereOncePerFrame) {
   const Graph graph = graphOf(R"("c": {"type": "Constant@1", "params": {"value": "${frame}"}},
       "fixed": {"type": "Constant@1", "params": {"value": 100}},
       "sum": {"type": "Add@1", "in": {"a": "c", "b": "fixed"}}, "time": {"type": "Constant@1", "params": {"value": "${time}"}})",
-                              registry, "/graphs", R"("frames": "1001-1003", "fps": 2, )");
+                              registry, "/graphs", R"("frames": "1-3", "fps": 2, )");
   EXPECT_EQ(graph.index.at("c").count, 3);
   EXPECT_EQ(graph.index.at("fixed").count, 1);
   EXPECT_EQ(graph.index.at("sum").count, 3);
-  EXPECT_EQ(numbersAt(graph, "sum"), (std::vector<double>{1101, 1102, 1103}));
+  EXPECT_EQ(numbersAt(graph, "sum"), (std::vector<double>{101, 102, 103}));
   EXPECT_EQ(numbersAt(graph, "time"), (std::vector<double>{0, 0.5, 1}));
   EXPECT_EQ(counters->constants, 7);  // 3 + 1 + 3
-  EXPECT_EQ(graph.labelOf(graph.find("sum") + 1), "sum (frame 1002)");
+  EXPECT_EQ(graph.labelOf(graph.find("sum") + 1), "sum (frame 2)");
   EXPECT_EQ(graph.labelOf(graph.find("fixed")), "fixed");
 }
 
@@ -117,10 +117,10 @@ TEST_F(Sweeps, WrongOnesAreTold) {
   EXPECT_EQ(errorsOf(R"("vars": {"seed": 1}, "wedge": {"sead": [1]}, )"),
             Errors{"test.json:1:45: wedge.sead: the graph has no variable \"sead\"; did you mean \"seed\"?"});
   EXPECT_EQ(errorsOf(R"("vars": {"s": 1}, "wedge": {"s": 1}, )"),
-            Errors{"test.json:1:47: wedge.s: this is 1; it would have to be a list of the values to try, as "
+            Errors{"test.json:1:48: wedge.s: this is 1; it would have to be a list of the values to try, as "
                    "[1, 2, 3]"});
   EXPECT_EQ(errorsOf(R"("vars": {"s": 1}, "wedge": {"s": [1, 1]}, )"),
-            Errors{"test.json:1:51: wedge.s: 1 is in the list already; leave one of the two out"});
+            Errors{"test.json:1:52: wedge.s: 1 is in the list already; leave one of the two out"});
   const Checked marked = check(R"({"format": 1, "frames": "1", "nodes": {"a": {"type": "Constant@1",
       "params": {"value": "${frame:x}"}}}})",
                                registry);

@@ -90,8 +90,9 @@ TEST_F(Verbs, RunRefusesWrongGraphsWithoutRunning) {
   EXPECT_NE(
       err.str().find("gone.json: the graph can't be opened: No such file or directory; name a graph file"),
       std::string::npos);
-  EXPECT_EQ(run(directory.path().string()), kWrongInput);
-  EXPECT_NE(err.str().find("this is a directory"), std::string::npos);
+  const TemporaryDirectory empty;
+  EXPECT_EQ(run(empty.path().string()), kWrongInput);
+  EXPECT_NE(err.str().find("is a directory without graphs; graphs are named *.json"), std::string::npos);
   EXPECT_EQ(run(graph(sink), "d"), kWrongInput);
   EXPECT_NE(err.str().find("g.json: the graph has no node \"d\"; the known nodes are"), std::string::npos);
   EXPECT_EQ(run(directory.write("g.json", "no graph")), kWrongInput);
@@ -156,7 +157,7 @@ TEST_F(Verbs, SeveralGraphsRunAsOneAndShare) {
   EXPECT_EQ(counters->blobs, 1);
   EXPECT_TRUE(fs::exists(directory.path() / "shots/a/value.txt"));
   EXPECT_TRUE(fs::exists(directory.path() / "shots/b/value.txt"));
-  EXPECT_NE(out.str().find("graph  ran  cached  failed"), std::string::npos) << out.str();
+  EXPECT_NE(out.str().find("  graph  ran  cached  failed"), std::string::npos) << out.str();
   options.graphs = {(directory.path() / "shots/*.json").string(),
                     (directory.path() / "shots/a.json").string()};
   EXPECT_EQ(run(options), kOk) << err.str();
@@ -194,8 +195,8 @@ TEST_F(Verbs, PlanSaysWhatRunWillDoAndWhy) {
   EXPECT_EQ(run(options), kOk) << err.str();
   EXPECT_NE(lineOf("s").find("hit"), std::string::npos) << out.str();
   plan.sets = {"c.value=6"};
-  EXPECT_NE(lineOf("c").find("run  value 5 → 6"), std::string::npos) << out.str();
-  EXPECT_NE(lineOf("a").find("may run  upstream: c"), std::string::npos) << out.str();
+  EXPECT_NE(lineOf("c").find("run         value 5 → 6"), std::string::npos) << out.str();
+  EXPECT_NE(lineOf("a").find("may run     upstream: c"), std::string::npos) << out.str();
   plan.sets = {};
   fs::remove(directory.path() / "out/value.txt");
   EXPECT_NE(lineOf("s").find("value.txt is missing"), std::string::npos) << out.str();
@@ -277,9 +278,12 @@ TEST_F(Verbs, CheckTellsOfAllGraphs) {
                       "{\"format\": 1, \"nodes\": {\"c\": {\"type\": \"Constnt@1\"},\n\"r\": {\"type\": "
                       "\"ReadText@1\", \"params\": {\"file\": \"gone\"}}}}");
   Console console{out, err, cancel, false, 80};
-  EXPECT_EQ(checkVerb({{good}, {}, {}}, registry, environment(), console), kOk);
+  ShotOptions options;
+  options.graphs = {good};
+  EXPECT_EQ(checkVerb(options, registry, environment(), console), kOk);
   EXPECT_EQ(out.str(), good + ": 1 node, no errors\n");
-  EXPECT_EQ(checkVerb({{bad, good}, {}, {}}, registry, environment(), console), kWrongInput);
+  options.graphs = {bad, good};
+  EXPECT_EQ(checkVerb(options, registry, environment(), console), kWrongInput);
   EXPECT_NE(err.str().find(bad + ":1:39: c: there is no node type"), std::string::npos) << err.str();
   EXPECT_NE(err.str().find(bad + ":2:48: r.file: there is no file"), std::string::npos) << err.str();
   EXPECT_EQ(counters->constants, 0);
