@@ -26,6 +26,8 @@ struct LinkEntry {
   Origin origin;       ///< of the link's text
   std::string node;    ///< empty where the text is no link, which then has been reported
   std::string output;  ///< empty: the node's first
+  Origin named = {};   ///< in an expanded file: of the text that names node and output, from which the link may
+                       ///< come through ends of subgraphs
 };
 
 struct NodeEntry {
@@ -85,17 +87,18 @@ struct GroupEntry {
   Origin origin;
   std::vector<std::pair<std::string, std::string>>
       outputs;                ///< name, and "node.output" or "node" within the graph
-  std::string subgraph = {};  ///< "Shatter"
+  std::string subgraph = {};             ///< "Shatter"
+  std::size_t firstNode = 0, nodes = 0;  ///< which of GraphFile::nodes are in it: so many from the first on
 };
 
 /// An output that a subgraph's declaration says must be of some type.
 struct ExpectedType {
   Origin origin;  ///< of the link
   std::string where;
-  std::string type;   ///< what is wanted
-  Origin typeOrigin;  ///< where that is said
-  std::string node,
-      output;  ///< what is wired, as in LinkEntry; node "": nothing, only the type's name counts
+  std::string type;          ///< what is wanted
+  Origin typeOrigin;         ///< where that is said
+  Origin named;              ///< as in LinkEntry
+  std::string node, output;  ///< what is wired, as in LinkEntry; node "": nothing, only the type's name counts
 };
 
 struct GraphFile {
