@@ -36,8 +36,8 @@ const char* const kNameRule =
     "ends";
 
 bool isName(std::string_view text) {
-  return !text.empty() && !hasBlankEnd(text) &&
-         text.find_first_of("./@${}:=\"'") == std::string_view::npos && !hasControlCharacter(text);
+  return !text.empty() && !hasBlankEnd(text) && text.find_first_of("./@${}:=\"'") == std::string_view::npos &&
+         !hasControlCharacter(text);
 }
 
 }  // namespace sherd

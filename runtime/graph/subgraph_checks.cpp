@@ -31,8 +31,9 @@ class EndsCheck {
 
   void check(const ExpectedType& expected) {
     if (!types_.contains(expected.type))
-      diagnostics_.add(expected.typeOrigin, expected.where, "there is no type " + inQuotes(expected.type),
-                       suggestion(expected.type, {types_.begin(), types_.end()}, "types", "sherd nodes TYPE"));
+      diagnostics_.add(
+          expected.typeOrigin, expected.where, "there is no type " + inQuotes(expected.type),
+          suggestion(expected.type, {types_.begin(), types_.end()}, "types", "sherd nodes TYPE"));
     const auto node = nodeTypes_.find(expected.node);
     if (node == nodeTypes_.end() || node->second == nullptr) return;  // checkGraph tells of that
     const std::string named = expected.named.text();

@@ -96,8 +96,7 @@ class Expander {
     }
     if (depth >= kDeepest) return refuse("subgraphs are nested more than 64 deep", "nest them less");
     isTooLarge_ = count_ + child.definition->nodes.size() > kMostNodes;
-    if (isTooLarge_)
-      return refuse("the subgraphs stand for more than 250,000 nodes", "use fewer");
+    if (isTooLarge_) return refuse("the subgraphs stand for more than 250,000 nodes", "use fewer");
     return true;
   }
 
@@ -120,7 +119,8 @@ class Expander {
     entry.in.clear();
     for (const LinkEntry& link : node.in) {
       const Resolved end = followLink(instance, link, instance.place(node, link.port), diagnostics_);
-      if (end.state != State::Absent) entry.in.push_back({link.port, link.origin, end.node, end.output, end.named});
+      if (end.state != State::Absent)
+        entry.in.push_back({link.port, link.origin, end.node, end.output, end.named});
     }
   }
 
