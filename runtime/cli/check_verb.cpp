@@ -15,6 +15,7 @@ int checkVerb(const ShotOptions& options, const Registry& registry, const Enviro
     one.graphs = {path};
     Diagnostics diagnostics;
     const Shots shots = openShots(one, Opening::ToCheck, registry, environment, diagnostics);
+    for (const std::string& note : shots.notes) console.err << note << '\n';
     printDiagnostics(diagnostics, console.err);
     if (!diagnostics.empty()) {
       code = kWrongInput;

@@ -37,9 +37,12 @@ struct Commands {
   ShotOptions check;
   NodesOptions nodes;
   CacheOptions cache;
+  FmtOptions fmt;
+  UpgradeOptions upgrade;
   int threads = 0;
   CLI::App *runApp = nullptr, *planApp = nullptr, *checkApp = nullptr, *nodesApp = nullptr,
            *cacheApp = nullptr;
+  CLI::App *fmtApp = nullptr, *upgradeApp = nullptr;
 
   Commands() {
     app.set_version_flag("--version", std::string("sherd ") + SHERD_VERSION);
@@ -49,6 +52,8 @@ struct Commands {
     addCheck();
     addNodes();
     addCache();
+    addFmt();
+    addUpgrade();
   }
 
  private:
@@ -113,6 +118,19 @@ struct Commands {
     addShots(*checkApp, check);
   }
 
+  void addFmt() {
+    fmtApp = app.add_subcommand("fmt", "lay out graph files, showing what changes");
+    fmtApp->add_option("GRAPH", fmt.files, "graph files")->required();
+    auto* check = fmtApp->add_flag("--check", fmt.check, "end with exit code 1 if anything would change");
+    fmtApp->add_flag("--write", fmt.write, "write the changes that are shown")->excludes(check);
+  }
+
+  void addUpgrade() {
+    upgradeApp = app.add_subcommand("upgrade", "rewrite nodes of older versions, showing what changes");
+    upgradeApp->add_option("GRAPH", upgrade.files, "graph files")->required();
+    upgradeApp->add_flag("--write", upgrade.write, "write the changes that are shown");
+  }
+
   void addCache() {
     cacheApp = app.add_subcommand("cache", "look after the results that are kept on disk");
     cacheApp->add_option("ACTION", cache.action,
@@ -148,13 +166,13 @@ std::vector<std::string> optionNames(const CLI::App& verb) {
 
 /// What the parser found wrong.
 Error parseError(const Commands& commands, const CLI::ParseError& error) {
-  for (const CLI::App* verb :
-       {commands.runApp, commands.planApp, commands.checkApp, commands.nodesApp, commands.cacheApp}) {
+  for (const CLI::App* verb : {commands.runApp, commands.planApp, commands.checkApp, commands.fmtApp,
+                               commands.upgradeApp, commands.nodesApp, commands.cacheApp}) {
     if (!verb->parsed()) continue;
     if (const std::vector<std::string> left = verb->remaining(); !left.empty())
       return unexpectedArgument(verb->get_name(), left.front(), optionNames(*verb));
-    const bool needsGraph =
-        verb->get_option_no_throw("GRAPH") != nullptr && verb->get_option("GRAPH")->count() == 0;
+    const CLI::Option* graph = verb->get_option_no_throw("GRAPH");
+    const bool needsGraph = graph != nullptr && graph->count() == 0;
     if (needsGraph && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
       return missingGraph(verb->get_name());
     return Error{
@@ -179,8 +197,10 @@ int runVerbOf(Commands& commands, const std::vector<std::string>& arguments, Con
   for (const std::string& argument : arguments) commands.run.command += ' ' + argument;
   setThreadLimit(commands.threads);
   if (commands.cacheApp->parsed()) return cacheVerb(commands.cache, Environment::ofProcess({}), console);
+  if (commands.fmtApp->parsed()) return fmtVerb(commands.fmt, console);
   const auto registry = loadNodes();
   if (!registry.ok()) return refuse(registry.error(), commands.run.json, console);
+  if (commands.upgradeApp->parsed()) return upgradeVerb(commands.upgrade, *registry, console);
   if (commands.nodesApp->parsed()) return nodesVerb(commands.nodes, *registry, console);
   const auto found = makeEnvironment();
   if (!found.ok()) return refuse(found.error(), commands.run.json, console);

@@ -1,5 +1,6 @@
 #include "cli/open_graph.h"
 
+#include "graph/migrate.h"
 #include "graph/subgraphs.h"
 
 namespace sherd {
@@ -27,6 +28,7 @@ Graph openGraph(const std::string& path, const ShotOptions& options, const Regis
   const std::size_t before = diagnostics.count();
   file = readGraphFile(path, diagnostics);
   expandSubgraphs(file, diagnostics);
+  migrate(file, registry, diagnostics, file.notes);
   // Of a file that can't be read as a graph, nothing more can be said.
   if (file.nodes.empty() && diagnostics.count() > before) return {};
   return checkGraph(file, registry, overrides, environment, diagnostics);

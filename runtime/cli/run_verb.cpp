@@ -111,6 +111,7 @@ int runVerb(const RunOptions& options, const Registry& registry, const Environme
             Console& console) {
   Diagnostics diagnostics;
   const Shots shots = openShots(options, Opening::ToRun, registry, environment, diagnostics);
+  for (const std::string& note : shots.notes) console.err << note << '\n';
   if (!diagnostics.empty()) return refuse(diagnostics, options, console);
   auto opened = openStore(options, environment, console.err);
   if (!opened.ok()) return refuse(opened.error(), options, console);

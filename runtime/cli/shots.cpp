@@ -100,6 +100,7 @@ Shots openShots(const ShotOptions& options, Opening opening, const Registry& reg
     const std::size_t before = diagnostics.count();
     Graph graph = openGraph(files[k], options, registry, environment, diagnostics, file);
     if (opening == Opening::ToRun) refuseSubgraphFile(file, diagnostics);
+    shots.notes.insert(shots.notes.end(), file.notes.begin(), file.notes.end());
     const int first = static_cast<int>(shots.graph.nodes.size());
     if (diagnostics.count() == before) {
       const auto wanted = wantedNodes(graph, options.target, options.to);

@@ -34,9 +34,10 @@ struct Shot {
 
 struct Shots {
   std::vector<Shot> shots;
-  Graph graph;                   ///< all of them
-  std::vector<int> wanted;       ///< in it
-  std::vector<bool> isSubgraph;  ///< per shot: the file holds a subgraph, which only `check` may open
+  Graph graph;                     ///< all of them
+  std::vector<int> wanted;         ///< in it
+  std::vector<bool> isSubgraph;    ///< per shot: the file holds a subgraph, which only `check` may open
+  std::vector<std::string> notes;  ///< for the user, on what is read otherwise than it is written
 };
 
 /// The files that the options name, in their order, directories and patterns replaced by what is in them,

@@ -17,12 +17,13 @@ bool isVerb(const std::string& word) {
   return std::find(verbNames().begin(), verbNames().end(), word) != verbNames().end();
 }
 
-const std::string kVerbs = "the verbs are run, plan, check, nodes and cache; `sherd --help` explains them";
+const std::string kVerbs =
+    "the verbs are run, plan, check, fmt, upgrade, nodes and cache; `sherd --help` explains them";
 
 }  // namespace
 
 const std::vector<std::string>& verbNames() {
-  static const std::vector<std::string> names{"run", "plan", "check", "nodes", "cache"};
+  static const std::vector<std::string> names{"run", "plan", "check", "fmt", "upgrade", "nodes", "cache"};
   return names;
 }
 

@@ -39,6 +39,19 @@ struct NodesOptions {
 };
 int nodesVerb(const NodesOptions& options, const Registry& registry, Console& console);
 
+struct FmtOptions {
+  std::vector<std::string> files;
+  bool check = false;  ///< end with 1 where anything would change
+  bool write = false;  ///< make the changes that are shown
+};
+int fmtVerb(const FmtOptions& options, Console& console);
+
+struct UpgradeOptions {
+  std::vector<std::string> files;
+  bool write = false;  ///< make the changes that are shown
+};
+int upgradeVerb(const UpgradeOptions& options, const Registry& registry, Console& console);
+
 struct CacheOptions {
   std::string action;     ///< stat, gc, verify or clear
   std::string directory;  ///< empty: DiskStore::defaultDirectory

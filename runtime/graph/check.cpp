@@ -44,6 +44,7 @@ class Checker {
         registry_(registry),
         diagnostics_(diagnostics),
         variables_(file, overrides.vars, environment, diagnostics),
+        wrongEnds_(checkSubgraphEnds(file, registry, diagnostics)),
         own_(file.nodes.size(), 0),
         swept_(file.nodes.size()) {
     graph_.source = file.source;
@@ -262,6 +263,7 @@ class Checker {
   /// type is unknown, which was told before.
   int findOutput(const LinkEntry& link, const std::string& where, const PortInfo*& output) {
     if (link.node.empty()) return -1;  // no link: told by the reader
+    if (!wrongEnds_.empty() && wrongEnds_.contains(link.named.text())) return -1;
     const int from = graph_.find(link.node);
     if (from < 0) {
       diagnostics_.add(link.origin, where, "there is no node " + inQuotes(link.node), nearNode(link.node));
@@ -392,6 +394,7 @@ class Checker {
   const Registry& registry_;
   Diagnostics& diagnostics_;
   Variables variables_;
+  std::set<std::string> wrongEnds_;  ///< links that were told of where a subgraph's ends are
   Graph graph_;
   std::vector<std::string> nodeNames_;
   std::size_t comparisonsLeft_ = 200000;
@@ -409,7 +412,7 @@ Graph checkGraph(const GraphFile& file, const Registry& registry, const Override
   const Overrides expanded = withSubgraphOverrides(file, overrides, diagnostics);
   Graph graph = Checker(file, registry, expanded, environment, diagnostics).check();
   graph.groups = groupsOf(file, graph);
-  checkSubgraphs(file, graph, registry, environment, diagnostics);
+  checkUnusedSubgraphs(file, registry, environment, diagnostics);
   return graph;
 }
 

@@ -26,6 +26,8 @@ struct LinkEntry {
   Origin origin;       ///< of the link's text
   std::string node;    ///< empty where the text is no link, which then has been reported
   std::string output;  ///< empty: the node's first
+  Origin named = {};   ///< in an expanded file: of the text that names node and output, from which the link
+                       ///< may come through ends of subgraphs
 };
 
 struct NodeEntry {
@@ -84,8 +86,9 @@ struct GroupEntry {
   std::string name;  ///< "break"
   Origin origin;
   std::vector<std::pair<std::string, std::string>>
-      outputs;                ///< name, and "node.output" or "node" within the graph
-  std::string subgraph = {};  ///< "Shatter"
+      outputs;                           ///< name, and "node.output" or "node" within the graph
+  std::string subgraph = {};             ///< "Shatter"
+  std::size_t firstNode = 0, nodes = 0;  ///< which of GraphFile::nodes are in it: so many from the first on
 };
 
 /// An output that a subgraph's declaration says must be of some type.
@@ -94,6 +97,7 @@ struct ExpectedType {
   std::string where;
   std::string type;   ///< what is wanted
   Origin typeOrigin;  ///< where that is said
+  Origin named;       ///< as in LinkEntry
   std::string node,
       output;  ///< what is wired, as in LinkEntry; node "": nothing, only the type's name counts
 };
@@ -108,6 +112,8 @@ struct GraphFile {
   std::vector<SubgraphEntry> subgraphs;
   /// The file holds a subgraph to be used by graphs; what it holds is here, and not in the rest.
   std::shared_ptr<const Subgraph> subgraph;
+
+  std::vector<std::string> notes;  ///< for the user, on what is read otherwise than it is written
 
   // What expandSubgraphs() adds:
   std::vector<GroupEntry> groups;  ///< outer ones first

@@ -98,7 +98,7 @@ class Parser {
     if (tooDeep(depth) || !advance()) return false;
     while (token_.kind != Kind::ArrayEnd) {
       if (!parseValue(value.items.emplace_back(), depth + 1)) return false;
-      if (!separator(Kind::ArrayEnd, "]")) return false;
+      if (!separator(Kind::ArrayEnd, ", or ] would have to stand here")) return false;
     }
     return advance();
   }
@@ -119,7 +119,7 @@ class Parser {
       if (token_.kind != Kind::Colon)
         return fail("a colon is missing", "a key is followed by : and its value");
       if (!advance() || !parseValue(member.value, depth + 1)) return false;
-      if (!separator(Kind::ObjectEnd, "}")) return false;
+      if (!separator(Kind::ObjectEnd, ", or } would have to stand here")) return false;
       path_.pop_back();
       if (isNew) value.members.push_back(std::move(member));
     }
@@ -127,10 +127,10 @@ class Parser {
   }
 
   /// A comma, or the closing bracket without reading it.
-  bool separator(Kind end, const char* bracket) {
+  bool separator(Kind end, const char* remedy) {
     if (token_.kind == end) return true;
     if (token_.kind == Kind::Comma) return advance();
-    return fail("a comma is missing", std::string(", or ") + bracket + " would have to stand here");
+    return fail("a comma is missing", remedy);
   }
 
   JsonScanner scanner_;
@@ -206,6 +206,40 @@ std::optional<std::string> scalarText(const JsonValue& value) {
       return numberText(value.number);
     default:
       return std::nullopt;
+  }
+}
+
+std::string jsonString(std::string_view text) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+      result += {'\\', c};
+    else if (byte < 0x20)
+      result += {'\\', 'u', '0', '0', kDigits[byte >> 4], kDigits[byte & 15]};
+    else
+      result += c;
+  }
+  return result + '"';
+}
+
+std::string jsonText(const JsonValue& value) {
+  std::string text;
+  switch (value.kind) {
+    case JsonValue::Kind::Null:
+      return "null";
+    case JsonValue::Kind::String:
+      return jsonString(value.text);
+    case JsonValue::Kind::Array:
+      for (const JsonValue& item : value.items) text += (text.empty() ? "" : ", ") + jsonText(item);
+      return '[' + text + ']';
+    case JsonValue::Kind::Object:
+      for (const JsonMember& member : value.members)
+        text += (text.empty() ? "" : ", ") + jsonString(member.key) + ": " + jsonText(member.value);
+      return text.empty() ? "{}" : "{ " + text + " }";
+    default:
+      return *scalarText(value);
   }
 }
 

@@ -53,6 +53,10 @@ std::string kindName(JsonValue::Kind kind);
 std::optional<std::string> scalarText(const JsonValue& value);
 /// The shortest decimal text that reads back as `number`.
 std::string numberText(double number);
+/// The value as JSON on one line.
+std::string jsonText(const JsonValue& value);
+/// The text as a JSON string, in quotation marks.
+std::string jsonString(std::string_view text);
 /// The value for a message: a string in quotation marks, a number as it is, else its kind.
 std::string describe(const JsonValue& value);
 

@@ -5,17 +5,17 @@
 namespace sherd {
 namespace {
 
-/// The bytes of one blank at an end of the text: a space, or one of Unicode's (U+00A0, U+2000 to U+200A,
-/// U+3000).
-bool beginsBlank(std::string_view text) {
-  if (text.starts_with(' ') || text.starts_with("\xC2\xA0") || text.starts_with("\xE3\x80\x80")) return true;
-  return text.size() >= 3 && text.starts_with("\xE2\x80") && static_cast<unsigned char>(text[2]) >= 0x80 &&
-         static_cast<unsigned char>(text[2]) <= 0x8A;
+/// One character that is a blank: a space, or one of Unicode's (U+00A0, U+2000 to U+200A, U+3000).
+bool isBlank(std::string_view character) {
+  if (character == " " || character == "\xC2\xA0" || character == "\xE3\x80\x80") return true;
+  return character.size() == 3 && character.starts_with("\xE2\x80") &&
+         static_cast<unsigned char>(character[2]) <= 0x8A;
 }
 
-bool endsBlank(std::string_view text) {
+/// Blanks take one to three bytes.
+bool hasBlankEnd(std::string_view text) {
   for (std::size_t length = 1; length <= 3 && length <= text.size(); ++length)
-    if (beginsBlank(text.substr(text.size() - length))) return true;
+    if (isBlank(text.substr(0, length)) || isBlank(text.substr(text.size() - length))) return true;
   return false;
 }
 
@@ -36,8 +36,8 @@ const char* const kNameRule =
     "ends";
 
 bool isName(std::string_view text) {
-  return !text.empty() && !beginsBlank(text) && !endsBlank(text) &&
-         text.find_first_of("./@${}:=\"'") == std::string_view::npos && !hasControlCharacter(text);
+  return !text.empty() && !hasBlankEnd(text) && text.find_first_of("./@${}:=\"'") == std::string_view::npos &&
+         !hasControlCharacter(text);
 }
 
 }  // namespace sherd

@@ -56,6 +56,7 @@ Result<void> Registry::add(NodeType type) {
   for (const auto* ports : {&type.inputs, &type.outputs})
     for (const PortInfo& port : *ports)
       if (port.value != nullptr) values_.try_emplace(port.type, KnownValue{port.valueBytes, type.name});
+  for (const std::string& former : type.formerNames) formerNames_.emplace(former, type.name);
   const auto found = types_.find(type.name);
   if (found == types_.end()) {
     std::string name = type.name;
@@ -70,8 +71,9 @@ Result<void> Registry::add(NodeType type) {
 }
 
 const NodeType* Registry::find(const std::string& name) const {
-  const auto found = types_.find(name);
-  return found == types_.end() ? nullptr : &found->second;
+  if (const auto found = types_.find(name); found != types_.end()) return &found->second;
+  const auto former = formerNames_.find(name);
+  return former == formerNames_.end() ? nullptr : &types_.at(former->second);
 }
 
 std::vector<const NodeType*> Registry::all() const {

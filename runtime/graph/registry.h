@@ -16,7 +16,7 @@ class Registry {
   /// ports has another size than the same type's values elsewhere: its pack is then built against other
   /// headers.
   Result<void> add(NodeType type);
-  /// The newest version of the type, or null.
+  /// The newest version of the type that has the name, or had it before and no other has it now; or null.
   const NodeType* find(const std::string& name) const;
   /// All types by name.
   std::vector<const NodeType*> all() const;
@@ -29,7 +29,8 @@ class Registry {
   Result<void> checkValues(const NodeType& type) const;
 
   std::map<std::string, NodeType> types_;
-  std::map<std::string, KnownValue> values_;  ///< by ValueType::name
+  std::map<std::string, std::string> formerNames_;  ///< and what the type is called now
+  std::map<std::string, KnownValue> values_;        ///< by ValueType::name
 };
 
 }  // namespace sherd

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <set>
+#include <unordered_map>
 
 #include "graph/subgraphs.h"
 #include "graph/suggest.h"
@@ -16,37 +16,62 @@ std::set<std::string> knownTypes(const Registry& registry) {
   return types;
 }
 
-/// The output that is wired, or null where checkGraph has said what is wrong with it.
-const PortInfo* outputOf(const Graph& graph, const ExpectedType& expected) {
-  const int i = graph.find(expected.node);
-  if (i < 0) return nullptr;
-  const NodeType* type = graph.nodes[static_cast<std::size_t>(i)].type;
-  if (type == nullptr || type->outputs.empty()) return nullptr;
-  return expected.output.empty() ? &type->outputs.front() : type->output(expected.output);
-}
-
 /// An integer may go where a number is declared: parameters take it.
 bool fits(const std::string& type, const std::string& declared) {
   return type == declared || (type == "Integer" && declared == "Number");
 }
 
-void checkExpectedTypes(const GraphFile& file, const Graph& graph, const Registry& registry,
-                        Diagnostics& diagnostics) {
-  if (file.expectedTypes.empty()) return;
-  const std::set<std::string> types = knownTypes(registry);
-  for (const ExpectedType& expected : file.expectedTypes) {
-    if (!types.contains(expected.type)) {
-      diagnostics.add(expected.typeOrigin, expected.where, "there is no type " + inQuotes(expected.type),
-                      suggestion(expected.type, {types.begin(), types.end()}, "types", "sherd nodes TYPE"));
-      continue;
-    }
-    const PortInfo* output = outputOf(graph, expected);
-    if (output != nullptr && !fits(output->type, expected.type))
-      diagnostics.add(expected.origin, expected.where,
-                      inQuotes(expected.node + '.' + output->name) + " is of type " + output->type,
-                      "the subgraph declares type " + expected.type);
+/// Finds what is wired to the ends of subgraphs and doesn't fit there.
+class EndsCheck {
+ public:
+  EndsCheck(const GraphFile& file, const Registry& registry, Diagnostics& diagnostics)
+      : diagnostics_(diagnostics), types_(knownTypes(registry)) {
+    for (const NodeEntry& node : file.nodes) nodeTypes_.emplace(node.name, registry.find(node.type));
   }
-}
+
+  void check(const ExpectedType& expected) {
+    if (!types_.contains(expected.type))
+      diagnostics_.add(
+          expected.typeOrigin, expected.where, "there is no type " + inQuotes(expected.type),
+          suggestion(expected.type, {types_.begin(), types_.end()}, "types", "sherd nodes TYPE"));
+    const auto node = nodeTypes_.find(expected.node);
+    if (node == nodeTypes_.end() || node->second == nullptr) return;  // checkGraph tells of that
+    const std::string named = expected.named.text();
+    if (wrong_.contains(named)) return;
+    const NodeType& type = *node->second;
+    const PortInfo* output = expected.output.empty() && !type.outputs.empty() ? &type.outputs.front()
+                                                                              : type.output(expected.output);
+    if (output == nullptr)
+      complainOfOutput(expected, type);
+    else if (types_.contains(expected.type) && !fits(output->type, expected.type))
+      diagnostics_.add(expected.origin, expected.where,
+                       inQuotes(expected.node + '.' + output->name) + " is of type " + output->type,
+                       "the subgraph declares type " + expected.type);
+    else
+      return;
+    wrong_.insert(named);
+  }
+
+  std::set<std::string> wrong() { return std::move(wrong_); }
+
+ private:
+  void complainOfOutput(const ExpectedType& expected, const NodeType& type) {
+    std::vector<std::string> names;
+    for (const PortInfo& output : type.outputs) names.push_back(output.name);
+    if (names.empty())
+      diagnostics_.add(expected.origin, expected.where,
+                       inQuotes(expected.node) + " is a " + type.name + ", which has no outputs",
+                       "wire another node");
+    else
+      diagnostics_.add(expected.origin, expected.where,
+                       type.name + " has no output " + inQuotes(expected.output),
+                       suggestion(expected.output, names, "outputs", "sherd nodes " + type.name));
+  }
+
+  Diagnostics& diagnostics_;
+  std::set<std::string> types_, wrong_;
+  std::unordered_map<std::string, const NodeType*> nodeTypes_;
+};
 
 const GroupEntry* findGroup(const GraphFile& file, const std::string& name) {
   for (const GroupEntry& group : file.groups)
@@ -73,8 +98,7 @@ std::vector<std::string> nodesOfGroup(const GraphFile& file, const GroupEntry& g
     if (std::find(nodes.begin(), nodes.end(), node) == nodes.end()) nodes.push_back(std::move(node));
   }
   if (!nodes.empty()) return nodes;
-  for (const NodeEntry& node : file.nodes)
-    if (node.name.starts_with(group.name + '/')) nodes.push_back(node.name);
+  for (std::size_t i = 0; i < group.nodes; ++i) nodes.push_back(file.nodes[group.firstNode + i].name);
   return nodes;
 }
 
@@ -87,9 +111,16 @@ std::map<std::string, std::vector<int>> groupsOf(const GraphFile& file, const Gr
   return groups;
 }
 
-void checkSubgraphs(const GraphFile& file, const Graph& graph, const Registry& registry,
-                    const Environment& environment, Diagnostics& diagnostics) {
-  checkExpectedTypes(file, graph, registry, diagnostics);
+std::set<std::string> checkSubgraphEnds(const GraphFile& file, const Registry& registry,
+                                        Diagnostics& diagnostics) {
+  if (file.expectedTypes.empty()) return {};
+  EndsCheck check(file, registry, diagnostics);
+  for (const ExpectedType& expected : file.expectedTypes) check.check(expected);
+  return check.wrong();
+}
+
+void checkUnusedSubgraphs(const GraphFile& file, const Registry& registry, const Environment& environment,
+                          Diagnostics& diagnostics) {
   // It may read the frame, which there is once it is used.
   for (const GraphFile& unused : file.unused)
     checkGraph(unused, registry, {.vars = {}, .sets = {}, .frames = "1"}, environment, diagnostics);

@@ -22,6 +22,7 @@ struct Resolved {
   };
   State state = State::Unknown;
   std::string node, output;
+  Origin named = {};  ///< of the text that names them
 };
 
 /// The file's own nodes, or those of a subgraph at one node that stands for it.

@@ -33,7 +33,7 @@ class Walk {
     if (const auto child = at_->children.find(link_->node); child != at_->children.end())
       return intoOutput(*child->second);
     if (at_->names.contains(link_->node)) {
-      result_ = {State::Found, at_->prefix + link_->node, link_->output};
+      result_ = {State::Found, at_->prefix + link_->node, link_->output, link_->origin};
       return;
     }
     if (link_->node.find('/') != std::string::npos)

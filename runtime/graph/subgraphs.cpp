@@ -23,6 +23,7 @@ class Expander {
     Instance top;
     top.scope = &library_.scope();
     addChildren(top, nodes, 0);
+    if (isTooLarge_) return;
     emit(top, nodes, file);
     expandTargets(file);
   }
@@ -38,6 +39,7 @@ class Expander {
     stack_ = {&top};
     addChildren(top, subgraph.nodes, 0);
     stack_.clear();
+    if (isTooLarge_) return;
     emitVariables(top, file);
     emit(top, subgraph.nodes, file);
     emitOutputs(top, file, nullptr);
@@ -48,7 +50,7 @@ class Expander {
   bool isUsed(const Subgraph* subgraph) const { return used_.contains(subgraph); }
 
  private:
-  static constexpr std::size_t kDeepest = 64, kMostNodes = 1000000;
+  static constexpr std::size_t kDeepest = 64, kMostNodes = 250000;
 
   // --- The tree of what stands for what.
 
@@ -77,7 +79,7 @@ class Expander {
   }
 
   bool canExpand(const Instance& child, std::size_t depth) {
-    if (child.definition == nullptr) return false;
+    if (child.definition == nullptr || isTooLarge_) return false;
     const std::string where = child.outer->prefix + child.node->name;
     auto refuse = [&](std::string what, std::string remedy) {
       diagnostics_.add(child.node->typeOrigin, where, std::move(what), std::move(remedy));
@@ -93,8 +95,8 @@ class Expander {
       return refuse("the subgraph contains itself: " + loop + child.subgraph, "take it out of itself");
     }
     if (depth >= kDeepest) return refuse("subgraphs are nested more than 64 deep", "nest them less");
-    if (count_ + child.definition->nodes.size() > kMostNodes)
-      return refuse("the subgraphs stand for more than a million nodes", "use fewer");
+    isTooLarge_ = count_ + child.definition->nodes.size() > kMostNodes;
+    if (isTooLarge_) return refuse("the subgraphs stand for more than 250,000 nodes", "use fewer");
     return true;
   }
 
@@ -117,7 +119,8 @@ class Expander {
     entry.in.clear();
     for (const LinkEntry& link : node.in) {
       const Resolved end = followLink(instance, link, instance.place(node, link.port), diagnostics_);
-      if (end.state != State::Absent) entry.in.push_back({link.port, link.origin, end.node, end.output});
+      if (end.state != State::Absent)
+        entry.in.push_back({link.port, link.origin, end.node, end.output, end.named});
     }
   }
 
@@ -128,7 +131,9 @@ class Expander {
     checkInputs(instance, node, child, file);
     checkParams(instance, node, *child.definition);
     emitVariables(child, file);
+    file.groups[group].firstNode = file.nodes.size();
     emit(child, child.definition->nodes, file);
+    file.groups[group].nodes = file.nodes.size() - file.groups[group].firstNode;
     emitOutputs(child, file, &group);
   }
 
@@ -209,8 +214,8 @@ class Expander {
                      const Resolved& end, GraphFile& file) {
     if (port.type.empty()) return;
     const bool isFound = end.state == State::Found;
-    file.expectedTypes.push_back(
-        {origin, where, port.type, port.typeOrigin, isFound ? end.node : "", isFound ? end.output : ""});
+    file.expectedTypes.push_back({origin, where, port.type, port.typeOrigin, end.named,
+                                  isFound ? end.node : "", isFound ? end.output : ""});
   }
 
   // --- Targets.
@@ -237,6 +242,7 @@ class Expander {
   std::vector<const Instance*> stack_;  ///< the subgraphs around the one that is being added
   std::set<const Subgraph*> used_;
   std::size_t count_ = 0;
+  bool isTooLarge_ = false;  ///< which was reported; nothing more is expanded
 };
 
 GraphFile emptyLike(const GraphFile& file) {

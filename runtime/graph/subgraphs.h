@@ -1,6 +1,11 @@
 // Subgraphs: named pieces of a graph that nodes stand for.
 #pragma once
 
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
 #include "graph/graph.h"
 
 namespace sherd {
@@ -18,10 +23,14 @@ std::vector<std::string> nodesOfGroup(const GraphFile& file, const GroupEntry& g
 /// The same for all of them, by name and as indices.
 std::map<std::string, std::vector<int>> groupsOf(const GraphFile& file, const Graph& graph);
 
-/// Of an expanded file whose other checks have been made (checkGraph): that what is wired to a subgraph's
-/// ports has the declared type, and that the subgraphs that no node uses are without errors.
-void checkSubgraphs(const GraphFile& file, const Graph& graph, const Registry& registry,
-                    const Environment& environment, Diagnostics& diagnostics);
+/// Of an expanded file: whether what is wired to the ends of subgraphs has the declared types. Returns the
+/// places (LinkEntry::named, as text) of the links that are wrong and have been reported, so that the nodes
+/// behind those ends need not complain as well.
+std::set<std::string> checkSubgraphEnds(const GraphFile& file, const Registry& registry,
+                                        Diagnostics& diagnostics);
+/// Checks the subgraphs that no node uses.
+void checkUnusedSubgraphs(const GraphFile& file, const Registry& registry, const Environment& environment,
+                          Diagnostics& diagnostics);
 
 /// The overrides of an expanded file, with "--set break.gamma=…" of a node that stood for a subgraph made an
 /// override of the variable "break/gamma".

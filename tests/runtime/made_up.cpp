@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/parallel.h"
+#include "graph/migrate.h"
 #include "graph/subgraphs.h"
 
 namespace sherd::test {
@@ -227,6 +228,7 @@ Checked check(const std::string& text, const Registry& registry, const std::vect
       readGraph(text, std::make_shared<const Source>(Source{"test.json", directory}), diagnostics);
   expandSubgraphs(file, diagnostics);
   Checked checked;
+  migrate(file, registry, diagnostics, checked.notes);
   checked.graph = checkGraph(file, registry, overrides, outside, diagnostics);
   for (const Diagnostic& diagnostic : diagnostics.sorted()) checked.errors.push_back(diagnostic.text());
   return checked;

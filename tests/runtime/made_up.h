@@ -59,7 +59,7 @@ Environment environment(const fs::path& current = "/current", const fs::path& as
 
 struct Checked {
   Graph graph;
-  std::vector<std::string> errors;
+  std::vector<std::string> errors, notes;
 };
 /// Reads and checks `text` as the file "test.json" in `directory`.
 Checked check(const std::string& text, const Registry& registry, const std::vector<std::string>& sets = {},

@@ -13,6 +13,12 @@
 namespace sherd::test {
 namespace {
 
+ShotOptions shots(std::vector<std::string> graphs) {
+  ShotOptions options;
+  options.graphs = std::move(graphs);
+  return options;
+}
+
 class Verbs : public ::testing::Test {
  protected:
   /// Writes a graph of the given nodes (and other keys) and returns its path.
@@ -278,12 +284,9 @@ TEST_F(Verbs, CheckTellsOfAllGraphs) {
                       "{\"format\": 1, \"nodes\": {\"c\": {\"type\": \"Constnt@1\"},\n\"r\": {\"type\": "
                       "\"ReadText@1\", \"params\": {\"file\": \"gone\"}}}}");
   Console console{out, err, cancel, false, 80};
-  ShotOptions options;
-  options.graphs = {good};
-  EXPECT_EQ(checkVerb(options, registry, environment(), console), kOk);
+  EXPECT_EQ(checkVerb(shots({good}), registry, environment(), console), kOk);
   EXPECT_EQ(out.str(), good + ": 1 node, no errors\n");
-  options.graphs = {bad, good};
-  EXPECT_EQ(checkVerb(options, registry, environment(), console), kWrongInput);
+  EXPECT_EQ(checkVerb(shots({bad, good}), registry, environment(), console), kWrongInput);
   EXPECT_NE(err.str().find(bad + ":1:39: c: there is no node type"), std::string::npos) << err.str();
   EXPECT_NE(err.str().find(bad + ":2:48: r.file: there is no file"), std::string::npos) << err.str();
   EXPECT_EQ(counters->constants, 0);
@@ -328,7 +331,8 @@ TEST(CommandLine, TellsVersionHelpAndMistakes) {
     EXPECT_EQ(out, "");
     return err;
   };
-  const std::string verbs = "the verbs are run, check, nodes and cache; `sherd --help` explains them\n";
+  const std::string verbs =
+      "the verbs are run, plan, check, fmt, upgrade, nodes and cache; `sherd --help` explains them\n";
   EXPECT_EQ(errorOf({}), "sherd needs a verb; " + verbs);
   EXPECT_EQ(errorOf({"foo"}), "there is no verb \"foo\"; " + verbs);
   EXPECT_EQ(errorOf({"rnu", "g.json"}), "there is no verb \"rnu\"; did you mean \"run\"? " + verbs);
