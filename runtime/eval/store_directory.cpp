@@ -205,6 +205,7 @@ bool Directory::replace(const std::string& relative, std::initializer_list<std::
     writeFailed(file.error);
     return false;
   }
+  const PartialFile known(file.path);
   if (const int error = writeAll(file.descriptor.number(), pieces); error != 0) {
     ::unlink(file.path.c_str());
     writeFailed(error);

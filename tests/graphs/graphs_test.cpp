@@ -59,16 +59,22 @@ TEST(Graphs, SameBytesWithOneAndTwoThreadsAndInTwoRuns) {
   }
 }
 
+testing::AssertionResult succeeds(const std::string& arguments) {
+  const ProgramRun run = runProgram(arguments);
+  if (run.exitCode == 0) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "exit code " << run.exitCode << ": " << run.output;
+}
+
 TEST(Graphs, FewerPiecesAfterMoreLeaveNoStaleFilesAndTouchNothingElse) {
   const ScratchDirectory scratch;
   const std::string out = scratch.file("pieces"), run = "run '" + kGraphs +
                                                         "mushroom_drop.json' --target all" + kQuickPicture +
                                                         " --var out='" + out + "' --var degree=";
-  ASSERT_EQ(runProgram(run + "30").exitCode, 0);
+  ASSERT_TRUE(succeeds(run + "30"));
   EXPECT_GE(measureExported(out, kAssets + "mushroom.obj").pieces, 30u);
   std::ofstream(out + "/notes.txt") << "mine";
   std::ofstream(out + "/piece_9999_surface.obj") << "mine too";
-  ASSERT_EQ(runProgram(run + "5").exitCode, 0);
+  ASSERT_TRUE(succeeds(run + "5"));
   std::filesystem::remove(out + "/piece_9999_surface.obj");
   expectBroken(out, kAssets + "mushroom.obj", 5, 7);
   EXPECT_EQ(contentOf(out + "/notes.txt"), "mine");

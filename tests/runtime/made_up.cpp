@@ -31,6 +31,13 @@ std::string TemporaryDirectory::write(const std::string& name, const std::string
 
 void hashValue(Hasher& hasher, const Blob& blob) { hasher.add(blob.numbers); }
 std::size_t byteSize(const Blob& blob) { return blob.numbers.size() * sizeof(double); }
+void saveValue(ArchiveWriter& to, const Blob& blob) { to.array(blob.numbers); }
+std::optional<Blob> loadValue(ArchiveReader& from, std::type_identity<Blob>) {
+  Blob blob;
+  from.array(blob.numbers);
+  if (!from.ok()) return std::nullopt;
+  return blob;
+}
 
 namespace {
 

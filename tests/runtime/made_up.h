@@ -35,10 +35,13 @@ class TemporaryDirectory {
 /// A value of some size.
 struct Blob {
   static constexpr const char* typeName = "Blob";
+  static constexpr int archiveVersion = 1;
   std::vector<double> numbers;
 };
 void hashValue(Hasher& hasher, const Blob& blob);
 std::size_t byteSize(const Blob& blob);
+void saveValue(ArchiveWriter& to, const Blob& blob);
+std::optional<Blob> loadValue(ArchiveReader& from, std::type_identity<Blob>);
 
 /// How often each of the made-up nodes ran.
 struct Counters {

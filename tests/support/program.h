@@ -17,11 +17,14 @@ struct ProgramRun {
   std::string output;  ///< standard output and error together
 };
 
-/// `arguments` as one would type them, quoted for a shell.
+/// `arguments` as one would type them, quoted for a shell. Nothing is taken from or left in a cache, unless they
+/// say --cache.
 inline ProgramRun runProgram(const std::string& arguments, const std::string& environment = {}) {
   ProgramRun run;
-  const std::string command =
-      environment + " '" SHERD_BINARY_DIR "/bin/sherd' " + arguments + " 2>&1 </dev/null";
+  const bool evaluates = arguments.starts_with("run ") || arguments.starts_with("plan ");
+  const bool isCached = !evaluates || arguments.find(" --cache ") != std::string::npos;
+  const std::string command = environment + " '" SHERD_BINARY_DIR "/bin/sherd' " + arguments +
+                              (isCached ? "" : " --no-cache") + " 2>&1 </dev/null";
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return run;
   char buffer[4096];
