@@ -158,18 +158,30 @@ INSTANTIATE_TEST_SUITE_P(Cases, SlowGraphs,
 
 TEST(SlowGraphs, ThreeToughnessesGiveFallingCounts) {
   const ScratchDirectory scratch;
-  const ProgramRun run =
-      runProgram("run '" + kGraphs + "toughness.json' --var out='" + scratch.file("out") + "'" +
-                 " --set weak_picture.samples=1 --set medium_picture.samples=1"
-                 " --set tough_picture.samples=1");
+  const ProgramRun run = runProgram("run '" + kGraphs + "toughness.json' --var out='" + scratch.file("out") +
+                                    "'" + kQuickPicture);
   ASSERT_EQ(run.exitCode, 0) << run.output;
+  EXPECT_TRUE(std::filesystem::exists(scratch.file("out/sheet.png")));
   std::size_t last = 1000;
-  for (const char* name : {"weak", "medium", "tough"}) {
+  for (const char* name : {"gamma_2", "gamma_20", "gamma_200"}) {
     const ExportedReport report = measureExported(scratch.file("out/") + name, kAssets + "table.obj");
     EXPECT_LT(report.pieces, last) << name;
     EXPECT_EQ(report.openEdges + report.lonelyCracks, 0u) << name;
     last = report.pieces;
   }
+}
+
+TEST(SlowGraphs, HigherDropsBreakIntoMorePieces) {
+  const ScratchDirectory scratch;
+  const ProgramRun run = runProgram("run '" + kGraphs + "higher_drops.json' --frames 1,4 --var out='" +
+                                    scratch.file("out") + "'" + kQuickPicture);
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  EXPECT_TRUE(std::filesystem::exists(scratch.file("out/drop.0004.png")));
+  EXPECT_TRUE(std::filesystem::exists(scratch.file("out/sheet.png")));
+  EXPECT_FALSE(std::filesystem::exists(scratch.file("out/0002")));
+  const ExportedReport low = measureExported(scratch.file("out/0001"), kAssets + "mushroom.obj");
+  const ExportedReport high = measureExported(scratch.file("out/0004"), kAssets + "mushroom.obj");
+  EXPECT_LT(low.pieces, high.pieces);
 }
 
 class SlowModels : public testing::TestWithParam<std::tuple<const char*, int>> {};
