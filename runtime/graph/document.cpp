@@ -154,8 +154,9 @@ Document::Document(std::string text, const SourcePtr& source, Diagnostics& diagn
 }
 
 std::string withEdits(const std::string& text, std::vector<TextEdit> edits) {
-  std::stable_sort(edits.begin(), edits.end(),
-                   [](const TextEdit& a, const TextEdit& b) { return a.begin < b.begin; });
+  std::stable_sort(edits.begin(), edits.end(), [](const TextEdit& a, const TextEdit& b) {
+    return std::pair(a.begin, a.end) < std::pair(b.begin, b.end);  // insertions come first
+  });
   std::string result;
   std::size_t at = 0;
   for (const TextEdit& edit : edits) {

@@ -85,7 +85,8 @@ class NodeMigration {
   }
 
   void convert(const MigrationStep& step) {
-    if (isWired(step.from)) return complain(step.from, "what is wired to it has another meaning now");
+    for (const auto& [was, port] : result_.links)
+      if (port == step.from) return complain(was, "what is wired to it has another meaning now");
     MigratedNode::Param* param = findParam(step.from);
     if (param == nullptr) return;
     const std::string json = currentJson(*param);
@@ -95,7 +96,7 @@ class NodeMigration {
       param->json = *converted;
     else
       complain(param->was.empty() ? param->name : param->was,
-               "what " + inQuotes(json) + " is for " + result_.type + " can't be told");
+               "what " + json + " is for " + result_.type + " can't be told");
   }
 
   void complain(const std::string& param, std::string what) {

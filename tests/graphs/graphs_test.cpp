@@ -33,6 +33,12 @@ TEST(Graphs, AllPassCheck) {
   EXPECT_GE(graphs, 4);
 }
 
+TEST(Graphs, RecipesAreSoundSubgraphs) {
+  const ProgramRun run = runProgram("check '" + kGraphs + "recipes/impact_to_pieces.json'");
+  EXPECT_EQ(run.exitCode, 0) << run.output;
+  EXPECT_NE(run.output.find("a subgraph of 6 nodes, no errors"), std::string::npos) << run.output;
+}
+
 TEST(Graphs, MushroomDropBreaks) {
   const ScratchDirectory scratch;
   const ProgramRun run = runProgram("run '" + kGraphs + "mushroom_drop.json' --var out='" +
@@ -155,6 +161,18 @@ INSTANTIATE_TEST_SUITE_P(Cases, SlowGraphs,
                          testing::Values(std::pair("first_fracture.json", "vase.obj"),
                                          std::pair("wall_ball.json", "wall.obj")),
                          [](const auto& info) { return std::string(info.param.second).substr(0, 4); });
+
+TEST(SlowGraphs, TheRecipeGivesWhatItsNodesWouldGive) {
+  const ScratchDirectory scratch;
+  for (const char* graph : {"recipe", "first_fracture"}) {
+    const ProgramRun run = runProgram("run '" + kGraphs + graph + ".json' --var out='" + scratch.file(graph) +
+                                      "'" + kQuickPicture);
+    ASSERT_EQ(run.exitCode, 0) << run.output;
+  }
+  const auto recipe = filesBelow(scratch.file("recipe")), flat = filesBelow(scratch.file("first_fracture"));
+  EXPECT_GT(flat.size(), 20u);
+  EXPECT_TRUE(recipe == flat);
+}
 
 TEST(SlowGraphs, ThreeToughnessesGiveFallingCounts) {
   const ScratchDirectory scratch;

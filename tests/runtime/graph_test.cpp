@@ -215,7 +215,7 @@ TEST(GraphCheck, TellsOfTheFileAsAWhole) {
   EXPECT_EQ(errorsIn("{\"format\": 1, \"vars\": {\"frame\": 1}, " + nodes + "}"),
             std::vector<std::string>{
                 "test.json:1:24: vars.frame: this variable is set by the program; choose another name"});
-  EXPECT_EQ(errorsIn("{\"format\": 1, \"vars\": {\"a b\": 1}, " + nodes + "}").size(), 1u);
+  EXPECT_EQ(errorsIn("{\"format\": 1, \"vars\": {\"a.b\": 1}, " + nodes + "}").size(), 1u);
   EXPECT_EQ(errorsIn("{\"format\": 1, \"vars\": {\"a\": null}, " + nodes + "}").size(), 1u);
   EXPECT_EQ(errorsIn("{\"format\": 1, \"nodes\": {\"a.b\": {\"type\": \"Constant@1\"}}}").size(), 1u);
   EXPECT_TRUE(

@@ -383,7 +383,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{kIn, R"({"type": "S", "in": {"x": "c"}, "params": {"by": null}})",
              "4:55: s.by: this is null; it would have to be a number, string, boolean or list"},
         Case{kIn, R"({"type": "S", "in": {"x": "c"}, "params": {"by": "${none}"}})",
-             "4:55: vars.s/by: there is no variable \"none\"; the known variables are \"ASSETS\""},
+             "4:55: vars.s/by: there is no variable \"none\"; the known variables are \"ASSETS\", \"frame\", "
+             "\"time\""},
         Case{kIn, R"({"type": "S@1", "in": {"x": "c"}})",
              "4:15: s: there is no node type \"S\"; it is a subgraph: write \"S\", without a version"},
         Case{kOut, R"({"type": "Add@1", "in": {"a": "t"}}, "t": {"type": "S", "in": {"x": "c"}})",
