@@ -1,6 +1,7 @@
 #include "eval/evaluation.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "graph/instances.h"
 
@@ -141,13 +142,19 @@ void Evaluation::look(int i, const ParamValues& params) {
     mustRun(i);
 }
 
+/// Of nodes with one key the first in the order runs: one of the others may need its value (a node that hands
+/// on what it gets, behind another one), never the other way round.
 void Evaluation::mustRun(int i) {
   Slot& s = slot(i);
-  const auto [twins, isFirst] = inFlight_.try_emplace(s.key);
+  const auto [found, isFirst] = inFlight_.try_emplace(s.key, Flight{i, {}});
+  Flight& flight = found->second;
   if (!isFirst) {
-    s.state = State::Twin;
-    twins->second.push_back(i);
-    return;
+    const bool leads = !slot(flight.leader).started &&
+                       place_[static_cast<std::size_t>(i)] < place_[static_cast<std::size_t>(flight.leader)];
+    const int twin = leads ? std::exchange(flight.leader, i) : i;
+    slot(twin).state = State::Twin;
+    flight.twins.push_back(twin);
+    if (!leads) return;
   }
   s.state = State::NeedsValues;
   s.counted = false;
@@ -270,8 +277,8 @@ void Evaluation::complete(int i, const Outputs& outputs) {
 void Evaluation::endTwins(int i) {
   const Slot& self = slot(i);
   const auto found = inFlight_.find(self.key);
-  if (found == inFlight_.end()) return;
-  const std::vector<int> twins = std::move(found->second);
+  if (found == inFlight_.end() || found->second.leader != i) return;
+  const std::vector<int> twins = std::move(found->second.twins);
   inFlight_.erase(found);
   for (const int twin : twins) {
     Slot& s = slot(twin);

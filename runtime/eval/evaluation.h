@@ -45,9 +45,9 @@ class Evaluation {
     bool wanted = false;
     bool told = false;     ///< consumers know its digests
     bool counted = false;  ///< `values` is up to date
-    bool ran = false;      ///< in this evaluation
+    bool started = false;  ///< its job is running, or has run
     bool reported = false;
-    bool released = false;  ///< it won't ask for values any more
+    bool released = false;              ///< it won't ask for values any more
     int digests = 0;                    ///< wires whose source isn't known
     int values = 0;                     ///< wires that it waits for the values of
     int readers = 0;                    ///< wires that may still ask for its values
@@ -138,9 +138,12 @@ class Evaluation {
   std::vector<Job> ready_;   ///< the last is taken first
   std::size_t active_ = 0;   ///< tasks that are started and not over
   bool stopped_ = false;     ///< by a failure
-  std::unordered_map<Digest, std::vector<int>>
-      inFlight_;                           ///< keys of nodes that run or will, and their twins
-  std::vector<const NodeReport*> outbox_;  ///< reports that the listener hasn't heard of
+  struct Flight {
+    int leader = 0;  ///< the node that runs, or will
+    std::vector<int> twins;
+  };
+  std::unordered_map<Digest, Flight> inFlight_;  ///< by key
+  std::vector<const NodeReport*> outbox_;        ///< reports that the listener hasn't heard of
   EvalReport report_;
 };
 

@@ -75,7 +75,9 @@ void Evaluation::doJob(Job job) {
   {
     const std::lock_guard lock(mutex_);
     const State state = slot(job.node).state;
-    if (token_.cancelled() || state == State::Failed || state == State::Skipped) return;
+    const bool isRun = job.output == Job::kRun;
+    if (token_.cancelled() || (isRun && state != State::NeedsValues && state != State::NeedsNames)) return;
+    slot(job.node).started = slot(job.node).started || (isRun && state == State::NeedsValues);
     if (job.output == Job::kRun && state == State::NeedsNames) {
       const auto params = finalParams(node(job.node), gather(node(job.node).wiredParams));
       if (params.ok())
@@ -199,7 +201,6 @@ void Evaluation::run(int i) {
     Slot& s = slot(i);
     s.report.ms = ms;
     s.report.threads = threadLimit();
-    s.ran = true;
     s.report.messages = result.messages;
     s.report.written = result.written;
     s.report.bytes = 0;

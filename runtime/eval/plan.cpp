@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include "eval/lookup.h"
 #include "graph/instances.h"
@@ -22,8 +23,12 @@ class Planner {
         slots_(graph.nodes.size()),
         digests_(graph.nodes.size()) {
     for (const int i : neededNodes(graph, wanted)) slot(i).needed = true;
-    for (const int i : topologicalOrder(graph))
-      if (slot(i).needed) order_.push_back(i);
+    place_.assign(graph.nodes.size(), -1);
+    for (const int i : topologicalOrder(graph)) {
+      if (!slot(i).needed) continue;
+      place_[static_cast<std::size_t>(i)] = static_cast<int>(order_.size());
+      order_.push_back(i);
+    }
     wanted_ = wanted;
   }
 
@@ -32,7 +37,8 @@ class Planner {
     if (options_.values)
       for (const int i : order_)
         if (std::binary_search(wanted_.begin(), wanted_.end(), i)) askAll(i);
-    for (std::size_t k = 0; k < toCount_.size(); ++k) askSources(toCount_[k], PlanState::Run);
+    for (std::size_t k = 0; k < toCount_.size(); ++k)
+      if (slot(toCount_[k]).state == PlanState::Run) askSources(toCount_[k], PlanState::Run);
     // What may run may ask for values that were not kept.
     for (std::size_t k = 0; k < following_.size(); ++k) askSources(following_[k], PlanState::Follows);
     std::vector<PlanEntry> entries;
@@ -105,11 +111,14 @@ class Planner {
     Slot& s = slot(i);
     s.why = why;
     if (s.key != Digest{}) {
-      const auto [twin, isFirst] = running_.try_emplace(s.key, i);
-      if (!isFirst && twin->second != i) {
-        s.state = PlanState::Hit;
-        s.why = "the same as " + sourceName(graph_, i, twin->second);
-        return;
+      const auto [leader, isFirst] = running_.try_emplace(s.key, i);
+      if (!isFirst && leader->second != i) {  // the first in the order runs, as in evaluate()
+        const bool leads =
+            place_[static_cast<std::size_t>(i)] < place_[static_cast<std::size_t>(leader->second)];
+        const int twin = leads ? std::exchange(leader->second, i) : i;
+        slot(twin).state = PlanState::Hit;
+        slot(twin).why = "the same as " + sourceName(graph_, twin, leader->second);
+        if (!leads) return;
       }
     }
     s.state = PlanState::Run;
@@ -184,7 +193,7 @@ class Planner {
   FileDigests files_;
   std::vector<Slot> slots_;
   std::vector<std::vector<Digest>> digests_;
-  std::vector<int> order_, wanted_, toCount_, following_;
+  std::vector<int> order_, place_, wanted_, toCount_, following_;
   std::unordered_map<Digest, int> running_;
   std::unordered_set<Digest> runningRecipes_;
 };

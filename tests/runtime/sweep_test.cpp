@@ -53,7 +53,7 @@ TEST_F(Sweeps, WhatReadsTheFrameIsThereOncePerFrame) {
   EXPECT_EQ(graph.index.at("sum").count, 3);
   EXPECT_EQ(numbersAt(graph, "sum"), (std::vector<double>{101, 102, 103}));
   EXPECT_EQ(numbersAt(graph, "time"), (std::vector<double>{0, 0.5, 1}));
-  EXPECT_EQ(counters->constants, 7);  // 3 + 1 + 3
+  EXPECT_EQ(counters->constants, 6);  // 3 + 1 + 3, two of which are 1
   EXPECT_EQ(graph.labelOf(graph.find("sum") + 1), "sum (frame 2)");
   EXPECT_EQ(graph.labelOf(graph.find("fixed")), "fixed");
 }
@@ -115,7 +115,7 @@ TEST_F(Sweeps, WrongOnesAreTold) {
           "every second one, or \"1,5,8-10\""});
   EXPECT_TRUE(errorsOf(R"("frames": 3, )").empty());
   EXPECT_EQ(errorsOf(R"("vars": {"seed": 1}, "wedge": {"sead": [1]}, )"),
-            Errors{"test.json:1:45: wedge.sead: the graph has no variable \"sead\"; did you mean \"seed\"?"});
+            Errors{"test.json:1:46: wedge.sead: the graph has no variable \"sead\"; did you mean \"seed\"?"});
   EXPECT_EQ(errorsOf(R"("vars": {"s": 1}, "wedge": {"s": 1}, )"),
             Errors{"test.json:1:48: wedge.s: this is 1; it would have to be a list of the values to try, as "
                    "[1, 2, 3]"});

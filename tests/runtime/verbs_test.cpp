@@ -194,7 +194,7 @@ TEST_F(Verbs, PlanSaysWhatRunWillDoAndWhy) {
       if (line.starts_with("  " + node + ' ')) return line;
     return std::string();
   };
-  EXPECT_NE(lineOf("c").find("run  never run"), std::string::npos) << out.str();
+  EXPECT_NE(lineOf("c").find("run         never run"), std::string::npos) << out.str();
   EXPECT_NE(lineOf("x").find("not needed"), std::string::npos) << out.str();
   RunOptions options;
   static_cast<ShotOptions&>(options) = plan;
