@@ -27,8 +27,9 @@ std::atomic<int> gThreadLimit{0};
 void setThreadLimit(int threads) { gThreadLimit = std::max(0, threads); }
 
 int threadLimit() {
+  static const int kMachine = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));  // reads a file
   const int limit = gThreadLimit;
-  return limit > 0 ? limit : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return limit > 0 ? limit : kMachine;
 }
 
 #ifndef SHERD_PARALLEL_STD

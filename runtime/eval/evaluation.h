@@ -103,6 +103,7 @@ class Evaluation {
 
   // Jobs; outside of mutex_.
   void dispatch();
+  void work();
   void doJob(Job job);
   void load(Job job);
   void run(int i);

@@ -50,24 +50,44 @@ void Evaluation::tellReports(std::vector<const NodeReport*> reports) {
 /// Starts tasks for ready jobs, at most one per thread: more would only be taken up by threads that wait
 /// inside of a node, and nest there.
 void Evaluation::dispatch() {
-  std::vector<Job> starting;
+  std::size_t starting = 0;
   {
     const std::lock_guard lock(mutex_);
     const auto limit = static_cast<std::size_t>(threadLimit());
-    for (; !ready_.empty() && active_ < limit; ++active_) {
-      starting.push_back(ready_.back());
-      ready_.pop_back();
+    while (active_ < limit && starting < ready_.size()) {
+      ++active_;
+      ++starting;
     }
   }
-  for (const Job job : starting)
-    group_->run([this, job] {
-      doJob(job);
-      {
-        const std::lock_guard lock(mutex_);
+  for (; starting > 0; --starting) group_->run([this] { work(); });
+}
+
+/// Does jobs one after the other as long as they are quick: handing each to a new task takes longer than many of
+/// them. Not for long, since the thread may be one that waits inside of a node.
+void Evaluation::work() {
+  constexpr std::chrono::microseconds kShift(500);
+  const auto start = Clock::now();
+  do {
+    Job job;
+    bool isMore = false;
+    {
+      const std::lock_guard lock(mutex_);
+      if (ready_.empty()) {
         --active_;
+        return;
       }
-      dispatch();
-    });
+      job = ready_.back();
+      ready_.pop_back();
+      isMore = !ready_.empty() && active_ < static_cast<std::size_t>(threadLimit());
+    }
+    if (isMore) dispatch();
+    doJob(job);
+  } while (Clock::now() - start < kShift);
+  {
+    const std::lock_guard lock(mutex_);
+    --active_;
+  }
+  dispatch();
 }
 
 void Evaluation::doJob(Job job) {

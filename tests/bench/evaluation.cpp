@@ -54,9 +54,7 @@ class Bench {
     return evaluate(graph, wanted, cache, token, {.values = values, .disk = &store});
   }
   void tell(benchmark::State& state, double error) const {
-    state.counters["ns/node"] =
-        benchmark::Counter(static_cast<double>(count) * 1e-9,
-                           benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    state.SetItemsProcessed(state.iterations() * count);
     state.counters["error"] = error;
   }
   double errorOf(const EvalReport& report) const {
@@ -141,9 +139,7 @@ void flowGraph(benchmark::State& state) {
     nodes[0]->try_put(0);
     graph.wait_for_all();
   }
-  state.counters["ns/node"] =
-      benchmark::Counter(static_cast<double>(count) * 1e-9,
-                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.SetItemsProcessed(state.iterations() * count);
   state.counters["error"] = std::abs(sums.back() - expected(count, deep));
 }
 
