@@ -2,6 +2,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "cli/json_events.h"
 #include "cli/progress.h"
@@ -12,17 +13,18 @@
 namespace sherd {
 namespace {
 
-std::vector<std::string> writtenFiles(const EvalReport& report) {
+/// The files of nodes that ran, of those that were hits, or of all.
+std::vector<std::string> writtenFiles(const EvalReport& report, std::optional<NodeState> state = {}) {
   std::vector<std::string> files;
   for (const NodeReport& node : report.nodes)
-    files.insert(files.end(), node.written.begin(), node.written.end());
+    if (!state || node.state == *state) files.insert(files.end(), node.written.begin(), node.written.end());
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
   return files;
 }
 
 /// One line per directory: how many files, and the names of the few that are worth opening first.
-void printWritten(const std::vector<std::string>& files, std::ostream& out) {
+void printWritten(const std::string& what, const std::vector<std::string>& files, std::ostream& out) {
   constexpr std::size_t kMostNamed = 6;
   std::map<std::string, std::vector<std::string>> byDirectory;
   for (const std::string& file : files) {
@@ -30,7 +32,7 @@ void printWritten(const std::vector<std::string>& files, std::ostream& out) {
     byDirectory[path.parent_path().string()].push_back(path.filename().string());
   }
   for (const auto& [directory, names] : byDirectory) {
-    out << "wrote " << countText(names.size(), "file") << " in " << shownPath(directory);
+    out << what << countText(names.size(), "file") << " in " << shownPath(directory);
     auto isKey = [&](const std::string& name) {
       return names.size() <= kMostNamed || name.ends_with(".png") || name.ends_with(".json");
     };
@@ -51,8 +53,9 @@ Diagnostics failures(const Graph& graph, const EvalReport& report) {
   return diagnostics;
 }
 
-void printSummary(const EvalReport& report, const std::vector<std::string>& files, Console& console) {
-  printWritten(files, console.out);
+void printSummary(const EvalReport& report, Console& console) {
+  printWritten("up to date: ", writtenFiles(report, NodeState::Hit), console.out);
+  printWritten("wrote ", writtenFiles(report, NodeState::Run), console.out);
   console.out << (report.cancelled ? "cancelled after "
                   : report.ok()    ? "done in "
                                    : "failed after ")
@@ -145,7 +148,7 @@ int runVerb(const RunOptions& options, const Registry& registry, const Environme
     jsonDone(report.ok(), report.ms, files, console.out);
   } else if (!options.quiet) {
     printShots(shots, report, console);
-    printSummary(report, files, console);
+    printSummary(report, console);
   }
   if (report.cancelled) return kCancelled;
   return report.ok() && isReported ? kOk : kNodeFailed;
