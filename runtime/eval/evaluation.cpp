@@ -351,7 +351,13 @@ void Evaluation::finalise() {
   for (const int i : order_) {
     Slot& s = slot(i);
     if (s.wanted && s.state == State::Known) report_.outputs[i] = s.outputs;
-    if (!s.reported) report(i, s.state == State::Known ? NodeState::Hit : NodeState::Skipped);
+    if (s.reported) continue;
+    const bool isKnown = s.state == State::Known;
+    const bool isLeftOver = !isKnown && !token_.cancelled();
+    if (isLeftOver)
+      s.report.error = failure("was never started, though nothing stood in its way",
+                               "this is a mistake in sherd, please report it");
+    report(i, isKnown ? NodeState::Hit : isLeftOver ? NodeState::Failed : NodeState::Skipped);
   }
 }
 

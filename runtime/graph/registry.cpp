@@ -30,6 +30,9 @@ Result<void> checkTable(const NodeType& type) {
                      " whose default is none of its words");
   }
   names.clear();
+  constexpr std::size_t kMostOutputs = 64;  // evaluation keeps a bit for each
+  if (type.outputs.size() > kMostOutputs)
+    return failure(name + " has " + std::to_string(type.outputs.size()) + " outputs", "64 is the most");
   for (const PortInfo& port : type.outputs)
     if (!once(port.name)) return failure(name + " has two outputs " + inQuotes(port.name));
   return {};

@@ -5,8 +5,10 @@
 #include <tbb/flow_graph.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 
+#include "base/parallel.h"
 #include "eval/plan.h"
 #include "runtime/made_up.h"
 
@@ -143,6 +145,39 @@ void flowGraph(benchmark::State& state) {
   state.counters["error"] = std::abs(sums.back() - expected(count, deep));
 }
 
+/// Two branches that have nothing to do with each other, by the number of threads: the ratio of the times is
+/// what counts, at most 0.6.
+void branches(benchmark::State& state) {
+  struct None {};
+  Registry registry = madeUpNodes();
+  const auto added = registry.add(NodeBuilder<None>("Busy", 1, "")
+                                      .optionalInput<double>("a", "")
+                                      .output<double>("out", "")
+                                      .run([](const None&, NodeIo& io) -> Result<void> {
+                                        const auto a = io.in<double>("a");
+                                        double sum = a ? *a : 1;
+                                        for (int i = 0; i < 5000000; ++i) sum = std::sin(sum) + 1;
+                                        io.out("out", sum);
+                                        return {};
+                                      }));
+  std::string text =
+      R"("p": {"type": "Constant@1", "params": {"value": 1}}, "q": {"type": "Constant@1", "params": {"value": 2}})";
+  for (const char* root : {"p", "q"})
+    for (int i = 0; i < 4; ++i)
+      text += std::string(",\"") + root + std::to_string(i) + R"(": {"type": "Busy@1", "in": {"a": ")" +
+              root + (i == 0 ? "" : std::to_string(i - 1)) + "\"}}";
+  const Graph graph = check("{\"format\": 1, \"nodes\": {" + text + "}}", registry).graph;
+  setThreadLimit(static_cast<int>(state.range(0)));
+  double failed = added.ok() ? 0 : 1;
+  for (auto _ : state) {
+    Cache cache;
+    CancelToken token;
+    failed += evaluate(graph, nodesOf(graph, {"p3", "q3"}), cache, token).ok() ? 0 : 1;
+  }
+  setThreadLimit(0);
+  state.counters["error"] = failed;
+}
+
 void sizes(benchmark::internal::Benchmark* benchmark) {
   benchmark->Unit(benchmark::kMillisecond)->ArgNames({"nodes", "deep"})->UseRealTime();
   for (const int count : {10000, 100000})
@@ -153,6 +188,7 @@ BENCHMARK(evaluateCold)->Apply(sizes);
 BENCHMARK(evaluateWarm)->Apply(sizes);
 BENCHMARK(planWarm)->Apply(sizes);
 BENCHMARK(flowGraph)->Apply(sizes);
+BENCHMARK(branches)->Unit(benchmark::kMillisecond)->ArgName("threads")->Arg(1)->Arg(2)->UseRealTime();
 BENCHMARK(loadAndCheck)->Unit(benchmark::kMillisecond)->Arg(1000);
 
 }  // namespace

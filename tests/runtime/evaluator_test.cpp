@@ -381,6 +381,24 @@ TEST_F(Evaluator, TakesManyInputs) {
   EXPECT_EQ(numberAt(graph, evaluateNodes(graph, {"m"}), "m", "sum"), 2 * kInputs);
 }
 
+TEST_F(Evaluator, TakesManyOutputsButNotTooMany) {
+  const auto typeWith = [](int outputs) {
+    NodeBuilder<None> builder("Fan" + std::to_string(outputs), 1, "Many outputs.");
+    for (int i = 0; i < outputs; ++i) builder.output<double>("o" + std::to_string(i), "");
+    return builder.run([outputs](const None&, NodeIo& io) -> Result<void> {
+      for (int i = 0; i < outputs; ++i) io.out("o" + std::to_string(i), static_cast<double>(i));
+      return {};
+    });
+  };
+  add(typeWith(64));
+  const auto refused = registry.add(typeWith(65));
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().text(), "node type \"Fan65\" has 65 outputs; 64 is the most");
+  const Graph graph = graphOf(
+      R"("f": {"type": "Fan64@1"}, "x": {"type": "Add@1", "in": {"a": "f.o63", "b": "f.o1"}})", registry);
+  EXPECT_EQ(numberAt(graph, evaluateNodes(graph, {"x"}), "x", "sum"), 64);
+}
+
 TEST(EvalCache, IsBoundedAndDropsTheLeastRecentlyUsed) {
   auto result = [](std::uint64_t key, std::size_t numbers) {
     CachedResult made;
