@@ -116,6 +116,7 @@ int planVerb(const PlanOptions& options, const Registry& registry, const Environ
     if (options.json) jsonErrors(diagnostics, console.out);
     return kWrongInput;
   }
+  for (const std::string& note : shots.notes) console.err << note << '\n';
   Cache cache;
   const EvalOptions how{.values = false, .disk = store.get()};
   const auto plan = planRun(shots.graph, shots.wanted, cache, how, readHistories(shots, store.get()));
