@@ -126,7 +126,7 @@ TEST_F(Plans, SayWhyANodeRuns) {
   EXPECT_EQ(entryOf(graph, both, "r").why, "in.txt has changed");
   expectAgreement(graph, both, "file");
   open()->collect(100000);  // the large value goes, what is known of it stays
-  both = planAndRun(graph, nodesOf(graph, {"n"}), true);
+  both = planAndRun(graph, nodesOf(graph, {"t"}), true);
   EXPECT_EQ(entryOf(graph, both, "r").state, PlanState::NotNeeded);
   EXPECT_EQ(entryOf(graph, both, "t").why, "its result was evicted");
   expectAgreement(graph, both, "evicted");

@@ -298,6 +298,8 @@ struct Case {
   const char* error;
 };
 
+void PrintTo(const Case& c, std::ostream* out) { *out << c.error; }
+
 class SubgraphMessages : public testing::TestWithParam<Case> {};
 
 TEST_P(SubgraphMessages, AreTheOnlyOnes) {
