@@ -227,7 +227,8 @@ def main(program, graphs):
     jsonschema.Draft7Validator.check_schema(schema)
     checks = Checks(program, schema)
 
-    shipped = sorted(pathlib.Path(graphs).rglob("*.json"))
+    # What the graphs wrote lies below them, in out/.
+    shipped = sorted(p for p in pathlib.Path(graphs).rglob("*.json") if "out" not in p.relative_to(graphs).parts)
     checks.expect(len(shipped) >= 4, f"only {len(shipped)} graphs below {graphs}")
     for path in shipped:
         checks.is_valid(path, json.loads(plain(path.read_text(encoding="utf-8"))))
@@ -247,7 +248,8 @@ def main(program, graphs):
     checks.is_valid("snippets", pasted)
     said, _ = checks.said_by_check({"snippets": pasted})
     for line in said["snippets"].splitlines():
-        checks.expect("FILE" in line or "DIRECTORY" in line, f"snippets: {line}")
+        placeholder = "FILE" in line or "DIRECTORY" in line or "writes to the same path" in line
+        checks.expect(placeholder, f"snippets: {line}")
 
     wrong = {name: changed(changes) for name, (changes, _) in WRONG.items()}
     said, code = checks.said_by_check(wrong)
