@@ -3,7 +3,7 @@
 # runs both.
 #   run.sh BUILD        BUILD is the build directory of sherd
 set -eu
-build=$1
+build=$(cd "$1" && pwd)
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 work=$build/sdk_example
 unset LD_LIBRARY_PATH SHERD_NODE_PATH SHERD_ASSETS
