@@ -23,7 +23,7 @@ install(FILES runtime/plugin/plugin.h DESTINATION include/sherd/plugin)
 install(FILES ${types_headers} DESTINATION include/sherd/types)
 
 install(DIRECTORY assets/ DESTINATION share/sherd/assets PATTERN "*.py" EXCLUDE)
-install(DIRECTORY graphs/ DESTINATION share/sherd/graphs FILES_MATCHING PATTERN "*.json")
+install(DIRECTORY graphs/ DESTINATION share/sherd/graphs FILES_MATCHING PATTERN "*.json" PATTERN out EXCLUDE)
 install(FILES LICENSE README.md DESTINATION share/doc/sherd)
 install(FILES nodes/README.md DESTINATION share/doc/sherd RENAME nodes.md)
 
