@@ -77,7 +77,7 @@ namespace {
 constexpr std::size_t kMostPartial = 1024;
 std::array<std::atomic<const char*>, kMostPartial> gPartial{};
 
-constexpr int kMostWaits = 20;  // ms
+constexpr int kMostWaits = 20;     // ms
 std::atomic<bool> gEnding{false};  ///< removePartialFiles() was called
 std::atomic<int> gMaking{0};       ///< threads that may be making a file just now
 thread_local volatile std::sig_atomic_t tIsMaking = 0;
@@ -87,8 +87,8 @@ thread_local volatile std::sig_atomic_t tIsMaking = 0;
   while (true) ::pause();
 }
 
-/// While one of these is there, a file may appear. removePartialFiles() waits until there are none, and no new
-/// ones come: else a file could appear behind its back.
+/// While one of these is there, a file may appear. removePartialFiles() waits until there are none, and no
+/// new ones come: else a file could appear behind its back.
 class Making {
  public:
   Making() {

@@ -12,14 +12,16 @@
 namespace sherd::faults {
 namespace {
 
-int openAnew(const std::string& path) { return ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666); }
+int openAnew(const std::string& path) {
+  return ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+}
 
 int exitCodeOf(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
 
 }  // namespace
 
-Process::Process(const std::vector<std::string>& arguments, const std::string& scratch, const std::string& packs,
-                 const std::function<void()>& prepare) {
+Process::Process(const std::vector<std::string>& arguments, const std::string& scratch,
+                 const std::string& packs, const std::function<void()>& prepare) {
   static std::atomic<int> count{0};
   outFile_ = scratch + "/said." + std::to_string(count) + ".out";
   errFile_ = scratch + "/said." + std::to_string(count++) + ".err";
@@ -69,8 +71,8 @@ Ended Process::wait(double seconds) {
   return ended;
 }
 
-Ended runSherd(const std::vector<std::string>& arguments, const std::string& scratch, const std::string& packs,
-               const std::function<void()>& prepare) {
+Ended runSherd(const std::vector<std::string>& arguments, const std::string& scratch,
+               const std::string& packs, const std::function<void()>& prepare) {
   return Process(arguments, scratch, packs, prepare).wait();
 }
 
@@ -94,6 +96,16 @@ std::set<std::string> namesIn(const std::map<std::string, std::string>& states, 
   for (const auto& [name, is] : states)
     if (is == state) names.insert(name);
   return names;
+}
+
+void expectSameFiles(const std::map<std::string, std::string>& files,
+                     const std::map<std::string, std::string>& expected, const std::string& when) {
+  for (const auto& [name, content] : expected) {
+    ASSERT_TRUE(files.contains(name)) << name << " is missing, " << when;
+    EXPECT_TRUE(files.at(name) == content) << name << " differs, " << when;
+  }
+  for (const auto& [name, content] : files)
+    EXPECT_TRUE(expected.contains(name)) << name << " is stray, " << when;
 }
 
 std::vector<std::string> linesOf(const std::string& path) {
@@ -122,13 +134,14 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-Weave::Weave(const ScratchDirectory& scratch, const std::map<std::string, std::string>& more, double ms) : root_(scratch.file("weave")) {
+Weave::Weave(const ScratchDirectory& scratch, const std::map<std::string, std::string>& more, double ms)
+    : root_(scratch.file("weave")) {
   fs::create_directories(root_);
   std::string nodes;
   const auto add = [&](const std::string& name, const std::string& type, const std::string& in,
                        const std::string& params) {
-    nodes += "    \"" + name + R"(": {"type": ")" + type + R"(@1", "in": {)" + in + R"(}, "params": {"name": ")" + name +
-             R"(", "log": ")" + file("log") + "\", " + params + "}},\n";
+    nodes += "    \"" + name + R"(": {"type": ")" + type + R"(@1", "in": {)" + in +
+             R"(}, "params": {"name": ")" + name + R"(", "log": ")" + file("log") + "\", " + params + "}},\n";
   };
   const auto work = [&](const std::string& name, const std::string& in) {
     add(name, "Work", in, "\"ms\": " + std::to_string(ms) + ", \"size\": 100000");

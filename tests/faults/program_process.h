@@ -27,8 +27,8 @@ struct Ended {
 class Process {
  public:
   /// `prepare` runs in the child, before the program; it may only make calls of the system.
-  Process(const std::vector<std::string>& arguments, const std::string& scratch, const std::string& packs = FAULT_PACK,
-          const std::function<void()>& prepare = {});
+  Process(const std::vector<std::string>& arguments, const std::string& scratch,
+          const std::string& packs = FAULT_PACK, const std::function<void()>& prepare = {});
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -46,10 +46,14 @@ class Process {
 Ended runSherd(const std::vector<std::string>& arguments, const std::string& scratch,
                const std::string& packs = FAULT_PACK, const std::function<void()>& prepare = {});
 
-/// Names of nodes by their state in what `run --json` or `plan --json` printed; lines that are cut off are left
-/// out.
+/// Names of nodes by their state in what `run --json` or `plan --json` printed; lines that are cut off are
+/// left out.
 std::map<std::string, std::string> statesIn(const std::string& events);
 std::set<std::string> namesIn(const std::map<std::string, std::string>& states, const std::string& state);
+
+/// By name; whose content differs is named, not printed.
+void expectSameFiles(const std::map<std::string, std::string>& files,
+                     const std::map<std::string, std::string>& expected, const std::string& when = {});
 
 std::vector<std::string> linesOf(const std::string& path);
 void writeText(const std::string& path, const std::string& text);
@@ -69,13 +73,16 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// A dozen nodes in a diamond-shaped weave that write two directories ("--target files"), in a scratch directory.
+/// A dozen nodes in a diamond-shaped weave that write two directories ("--target files"), in a scratch
+/// directory.
 class Weave {
  public:
   /// `more`: further nodes by name, with what stands between their braces; all wanted by default.
-  explicit Weave(const ScratchDirectory& scratch, const std::map<std::string, std::string>& more = {}, double ms = 6);
+  explicit Weave(const ScratchDirectory& scratch, const std::map<std::string, std::string>& more = {},
+                 double ms = 6);
 
-  std::vector<std::string> run(const std::vector<std::string>& more = {}, const std::string& cache = "cache") const;
+  std::vector<std::string> run(const std::vector<std::string>& more = {},
+                               const std::string& cache = "cache") const;
   Ended runToEnd(const std::vector<std::string>& more = {}, const std::string& cache = "cache") const;
   /// The files of an undisturbed run, without a cache.
   std::map<std::string, std::string> undisturbed(const std::vector<std::string>& more = {}) const;

@@ -1,5 +1,5 @@
-// Nodes that take time, fail, hang and write files, for tests of the whole program under faults. Each says in a
-// log file that it ran.
+// Nodes that take time, fail, hang and write files, for tests of the whole program under faults. Each says in
+// a log file that it ran.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -56,7 +56,8 @@ Result<void> logRun(const Logged& params) {
   if (params.log.empty()) return {};
   const int file = ::open(params.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   const std::string line = params.name + '\n';
-  const bool written = file >= 0 && ::write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+  const bool written =
+      file >= 0 && ::write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size());
   if (file >= 0) ::close(file);
   return written ? Result<void>() : failure("cannot write the log '" + params.log + "'");
 }
@@ -116,7 +117,8 @@ Result<void> writeFiles(const WriteParams& params, NodeIo& io) {
   SHERD_CHECK(logRun(params));
   SHERD_CHECK(sherd::makeDirectory(params.directory));
   std::vector<std::string> names;
-  for (std::int64_t i = 1; i <= params.count; ++i) names.push_back("piece_" + std::to_string(i) + "_crack.obj");
+  for (std::int64_t i = 1; i <= params.count; ++i)
+    names.push_back("piece_" + std::to_string(i) + "_crack.obj");
   SHERD_ASSIGN(const sherd::OwnedFiles files, sherd::OwnedFiles::open(params.directory, names));
   SHERD_CHECK(files.claim());
   const auto input = io.in<Bytes>("bytes");
