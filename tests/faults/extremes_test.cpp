@@ -15,14 +15,13 @@ std::size_t linesWith(const std::string& text, const std::string& part) {
   return count;
 }
 
-/// Adds 1 to what comes before, `length` times; the sum is written.
+/// Each adds a number of its own to what comes before.
 std::string chain(int length) {
   std::string nodes;
   for (int i = 0; i < length; ++i) {
     const std::string in = i == 0 ? "" : R"("in": {"a": "n)" + std::to_string(i - 1) + R"("}, )";
-    nodes += "\"n" + std::to_string(i) + R"(": {"type": "Add@1", )" + in +
-             R"("params": {"offset": 1}},)"
-             "\n";
+    nodes += "\"n" + std::to_string(i) + R"(": {"type": "Add@1", )" + in + R"("params": {"offset": )" +
+             std::to_string(i + 1) + "}},\n";
   }
   return R"({"format": 1, "nodes": {)" + nodes + "}}\n";
 }
@@ -45,7 +44,7 @@ void runAChain(int length) {
   EXPECT_EQ(linesWith(sherd({"plan", "--json"}), R"("state":"hit")"), count);
   EXPECT_EQ(linesWith(sherd({"run", "--json"}), R"("state":"hit")"), count);
   // A change at the far end runs all again: each sum is another one.
-  EXPECT_EQ(linesWith(sherd({"run", "--json", "--set", "n0.offset=2"}), R"("state":"run")"), count);
+  EXPECT_EQ(linesWith(sherd({"run", "--json", "--set", "n0.offset=1.5"}), R"("state":"run")"), count);
 }
 
 TEST(LongChain, TenThousandNodesRunAndAreReported) { runAChain(10'000); }
@@ -112,7 +111,7 @@ TEST(OddNames, GoThroughEveryVerb) {
   const auto files = filesBelow(folder + "/выход 出力");
   EXPECT_TRUE(files.contains("с пробелом/piece_2_crack.obj"));
   const std::string html = contentOf(page);
-  for (const std::string text : {"мой узел 🦔", "первый 节点", "Под граф"})
+  for (const std::string text : {"мой узел 🦔", "первый 节点"})
     EXPECT_TRUE(holds(html, text)) << text;
   EXPECT_FALSE(holds(html, "write <it> & so"));  // as it stands it would be a tag
   EXPECT_EQ(namesIn(statesIn(sherd({"plan", "--json", "--target", "всё 🦔"})), "hit"), names);
