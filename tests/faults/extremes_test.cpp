@@ -47,7 +47,7 @@ void runAChain(int length) {
   EXPECT_EQ(linesWith(sherd({"run", "--json", "--set", "n0.offset=1.5"}), R"("state":"run")"), count);
 }
 
-TEST(LongChain, TenThousandNodesRunAndAreReported) { runAChain(10'000); }
+TEST(LongChain, ThousandsOfNodesRunAndAreReported) { runAChain(3'000); }
 TEST(LongChainSlow, AHundredThousandNodesRunAndAreReported) { runAChain(100'000); }
 
 TEST(WideNode, TakesTenThousandInputs) {

@@ -17,6 +17,7 @@ void limitMemory() {
 
 struct Culprit {
   const char *body, *message;
+  const char* after = R"("type": "Work@1", "in": {"a": "the culprit"})";
 };
 
 TEST(FailingNodes, OthersFinishAndTheMessageNamesTheNode) {
@@ -29,24 +30,52 @@ TEST(FailingNodes, OthersFinishAndTheMessageNamesTheNode) {
         Culprit{
             R"("type": "Fail@1", "params": {"how": "number"})",
             "an unknown exception that the node didn't catch; this is a mistake in Fail, please report it"},
-        Culprit{R"("type": "Allocate@1")", "out of memory; use a smaller model or a coarser resolution"}}) {
+        Culprit{R"("type": "Allocate@1")", "out of memory; use a smaller model or a coarser resolution"},
+        Culprit{R"("type": "MakeHeavy@1", "params": {"when": "hashed"})",
+                "out of memory; use a smaller model or a coarser resolution",
+                R"("type": "UseHeavy@1", "in": {"heavy": "the culprit"})"}}) {
     const ScratchDirectory scratch;
-    const Weave weave(scratch, {{"the culprit", culprit.body},
-                                {"after it", R"("type": "Work@1", "in": {"a": "the culprit"})"}});
+    const Weave weave(scratch, {{"the culprit", culprit.body}, {"zz after it", culprit.after}});
     const auto expected = weave.undisturbed({"--target", "files"});
     const Ended ended = runSherd(weave.run({"--keep-going"}), weave.root(), FAULT_PACK, limitMemory);
     EXPECT_EQ(ended.exitCode, 1) << ended.out;
-    EXPECT_EQ(ended.err, weave.file("graph.json:16:5: the culprit: ") + culprit.message + '\n');
+    EXPECT_EQ(ended.err, weave.file("graph.json:15:5: the culprit: ") + culprit.message + '\n');
     expectSameFiles(weave.outputs(), expected);
     const auto states = statesIn(ended.out);
     EXPECT_EQ(namesIn(states, "failed"), std::set<std::string>{"the culprit"});
-    EXPECT_EQ(namesIn(states, "skipped"), std::set<std::string>{"after it"});
+    EXPECT_EQ(namesIn(states, "skipped"), std::set<std::string>{"zz after it"});
     EXPECT_EQ(namesIn(states, "run").size(), 12u);
     // What finished is not done again.
     weave.forgetLog();
     EXPECT_EQ(runSherd(weave.run({"--keep-going"}), weave.root(), FAULT_PACK, limitMemory).exitCode, 1);
     EXPECT_EQ(weave.log(), std::vector<std::string>{});
   }
+}
+
+TEST(FailingNodes, AValueTooBigToBeSavedIsNotKept) {
+  const ScratchDirectory scratch;
+  const Weave weave(scratch, {{"heavy", R"("type": "MakeHeavy@1", "params": {"when": "saved"})"},
+                              {"user", R"("type": "UseHeavy@1", "in": {"heavy": "heavy"})"}});
+  const auto expected = weave.undisturbed({"--target", "files"});
+  const Ended first = weave.runToEnd();
+  EXPECT_EQ(first.exitCode, 0) << first.out << first.err;
+  EXPECT_EQ(first.err, "warning: a FaultHeavy is not kept in the cache: out of memory\n");
+  expectSameFiles(weave.outputs(), expected);
+  // It is made again when it is wanted.
+  const Ended again = weave.runToEnd({"--set", "user.seed=1"});
+  EXPECT_EQ(again.exitCode, 0) << again.err;
+  EXPECT_EQ(namesIn(statesIn(again.out), "run"), (std::set<std::string>{"heavy", "user"}));
+}
+
+TEST(FailingNodes, AValueTooBigToBeLoadedIsMadeAgain) {
+  const ScratchDirectory scratch;
+  const Weave weave(scratch, {{"heavy", R"("type": "MakeHeavy@1", "params": {"when": "loaded"})"},
+                              {"user", R"("type": "UseHeavy@1", "in": {"heavy": "heavy"})"}});
+  EXPECT_EQ(weave.runToEnd().err, "");
+  const Ended again = weave.runToEnd({"--set", "user.seed=1"});
+  EXPECT_EQ(again.exitCode, 0) << again.err;
+  EXPECT_EQ(again.err, "warning: a FaultHeavy can't be loaded from the cache: out of memory\n");
+  EXPECT_EQ(namesIn(statesIn(again.out), "run"), (std::set<std::string>{"heavy", "user"}));
 }
 
 TEST(FailingNodes, AFailureStopsWhatCanBeStopped) {

@@ -59,6 +59,33 @@ void killAtRandomMoments(int rounds, std::uint64_t seed) {
   EXPECT_GT(finishedBefore, rounds);  // else the moments were badly chosen
 }
 
+/// The runs that are killed write more or fewer files than those that follow.
+void killAndEdit(int rounds, std::uint64_t seed) {
+  const ScratchDirectory scratch;
+  const Weave weave(scratch, {}, 1);
+  const auto expected = weave.undisturbed();
+  weave.startAnew();
+  const double length = secondsOfARun(weave);
+  Random random(seed);
+  for (int round = 0; round < rounds && !testing::Test::HasFailure(); ++round) {
+    if (random.below(2) == 0) weave.startAnew();  // else the files of the last run are there
+    for (std::size_t kill = 0; kill < 2; ++kill) {
+      const std::string count = std::to_string(1 + random.below(12)),
+                        bytes = std::to_string(random.below(500'000));
+      Process process(weave.run({"--set", "right.count=" + count, "--set", "left.size=" + bytes}),
+                      weave.root());
+      sleepSeconds(random.unit() * length);
+      process.signal(SIGKILL);
+      process.wait();
+    }
+    const Ended again = weave.runToEnd();
+    EXPECT_EQ(again.exitCode, 0) << again.out << again.err;
+    expectSameFiles(weave.outputs(), expected, "round " + std::to_string(round));
+  }
+}
+
+TEST(Killed, AnotherRunThanTheKilledOneCleansUp) { killAndEdit(10, 5); }
+TEST(KilledSlow, AnotherRunThanTheKilledOneCleansUpTwoHundredTimes) { killAndEdit(200, 6); }
 TEST(Killed, AnyMomentResumes) { killAtRandomMoments(20, 1); }
 TEST(KilledSlow, TwoHundredMomentsResume) { killAtRandomMoments(200, 2); }
 

@@ -27,6 +27,25 @@ inline std::optional<Bytes> loadValue(sherd::ArchiveReader& from, std::type_iden
   return Bytes{from.text()};
 }
 
+/// Too big for the memory that is left, when it is hashed, saved or loaded.
+struct Heavy {
+  static constexpr const char* typeName = "FaultHeavy";
+  static constexpr int archiveVersion = 1;
+  enum class When : std::uint8_t { Hashed, Saved, Loaded } when = When::Hashed;
+};
+inline void hashValue(sherd::Hasher& hasher, const Heavy& heavy) {
+  if (heavy.when == Heavy::When::Hashed) throw std::bad_alloc();
+  hasher.add(static_cast<int>(heavy.when));
+}
+inline std::size_t byteSize(const Heavy& heavy) { return sizeof heavy; }
+inline void saveValue(sherd::ArchiveWriter& to, const Heavy& heavy) {
+  if (heavy.when == Heavy::When::Saved) throw std::bad_alloc();
+  to.put(heavy.when);
+}
+inline std::optional<Heavy> loadValue(sherd::ArchiveReader&, std::type_identity<Heavy>) {
+  throw std::bad_alloc();
+}
+
 }  // namespace faults
 
 namespace {
@@ -200,6 +219,37 @@ NodeType allocateNode() {
       });
 }
 
+struct HeavyParams : Logged {
+  faults::Heavy::When when = faults::Heavy::When::Hashed;
+};
+
+NodeType heavyNode() {
+  using P = HeavyParams;
+  using When = faults::Heavy::When;
+  return loggedNode<P>("MakeHeavy", "Takes 5 ms to make a value that there is too little memory for.")
+      .choice("when", &P::when, {{"hashed", When::Hashed}, {"saved", When::Saved}, {"loaded", When::Loaded}},
+              "what the memory doesn't suffice for")
+      .output<faults::Heavy>("heavy", "the value")
+      .run([](const P& params, NodeIo& io) -> Result<void> {
+        SHERD_CHECK(logRun(params));
+        sleepFor(5, io.exec());
+        io.out<faults::Heavy>("heavy", {params.when});
+        return {};
+      });
+}
+
+NodeType useHeavyNode() {
+  using P = WorkParams;
+  return loggedNode<P>("UseHeavy", "Takes a heavy value.")
+      .input<faults::Heavy>("heavy", "the value")
+      .integer("seed", &P::seed, {.help = "is what comes out"})
+      .output<std::int64_t>("seed", "the seed")
+      .run([](const P& params, NodeIo& io) -> Result<void> {
+        io.out<std::int64_t>("seed", params.seed);
+        return logRun(params);
+      });
+}
+
 struct AddParams {
   double offset = 0;
 };
@@ -234,4 +284,5 @@ NodeType wideNode() {
 
 }  // namespace
 
-SHERD_NODE_PACK(workNode, writeFilesNode, failNode, hangNode, allocateNode, addNode, wideNode)
+SHERD_NODE_PACK(workNode, writeFilesNode, failNode, hangNode, allocateNode, heavyNode, useHeavyNode, addNode,
+                wideNode)
