@@ -1,6 +1,7 @@
 #include "base/atomic_file.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -71,9 +73,50 @@ bool fileHolds(const std::string& path, std::string_view content) {
 
 namespace {
 
+/// Paths of files that are being written; null where a place is free.
+constexpr std::size_t kMostPartial = 1024;
+std::array<std::atomic<const char*>, kMostPartial> gPartial{};
+
+constexpr int kMostWaits = 20;     // ms
+std::atomic<bool> gEnding{false};  ///< removePartialFiles() was called
+std::atomic<int> gMaking{0};       ///< threads that may be making a file just now
+thread_local volatile std::sig_atomic_t tIsMaking = 0;
+
+/// The process is about to end, by another thread: nothing more is to be done.
+[[noreturn]] void waitForTheEnd() {
+  while (true) ::pause();
+}
+
+/// While one of these is there, a file may appear. removePartialFiles() waits until there are none, and no
+/// new ones come: else a file could appear behind its back.
+class Making {
+ public:
+  Making() {
+    ++gMaking;
+    tIsMaking = 1;
+    if (!gEnding) return;
+    leave();
+    waitForTheEnd();
+  }
+  ~Making() { leave(); }
+  Making(const Making&) = delete;
+  Making& operator=(const Making&) = delete;
+
+ private:
+  static void leave() {
+    tIsMaking = 0;
+    --gMaking;
+  }
+};
+
+Descriptor makeFile(const std::string& path) {
+  const Making making;
+  return Descriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666));
+}
+
 /// 0, or the error number.
 int writeAll(const std::string& path, std::string_view content) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666));
+  Descriptor file = makeFile(path);
   if (file.number() < 0) return errno;
   while (!content.empty()) {
     const ssize_t put = ::write(file.number(), content.data(), content.size());
@@ -83,14 +126,6 @@ int writeAll(const std::string& path, std::string_view content) {
   }
   return file.close() ? 0 : errno;
 }
-
-}  // namespace
-
-namespace {
-
-/// Paths of files that are being written; null where a place is free.
-constexpr std::size_t kMostPartial = 1024;
-std::array<std::atomic<const char*>, kMostPartial> gPartial{};
 
 }  // namespace
 
@@ -105,9 +140,14 @@ PartialFile::PartialFile(std::string path) : path_(std::move(path)) {
 
 PartialFile::~PartialFile() {
   if (slot_ >= 0) gPartial[static_cast<std::size_t>(slot_)] = nullptr;
+  if (gEnding) waitForTheEnd();  // the path may be read just now
 }
 
 void removePartialFiles() noexcept {
+  gEnding = true;
+  // A thread that the signal interrupted makes nothing more. A file system that hangs is not waited for.
+  const int own = tIsMaking;
+  for (int waits = 0; gMaking > own && waits < kMostWaits; ++waits) ::poll(nullptr, 0, 1);
   for (const auto& partial : gPartial)
     if (const char* path = partial.load()) ::unlink(path);
 }

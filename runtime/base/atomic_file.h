@@ -29,8 +29,9 @@ class PartialFile {
   int slot_ = -1;  ///< −1: too many at once, this one is not known
 };
 
-/// Removes all files that are being written at this moment. For a signal handler that ends the process: takes
-/// no lock, allocates nothing.
+/// Removes all files that are being written at this moment, and makes threads that would write another one by
+/// writeFileAtomically() wait for ever. For a signal handler that then ends the process: takes no lock,
+/// allocates nothing, takes at most 20 ms.
 void removePartialFiles() noexcept;
 
 /// What a file is called while it is being written. A run that is killed leaves at most this behind; the next

@@ -7,9 +7,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// File names need not be UTF-8: what isn't is replaced rather than thrown at.
+/// File names need not be UTF-8: what isn't is replaced rather than thrown at. The line is written as one
+/// piece: a signal's handler may write the next one at any moment.
 void print(const Json& event, std::ostream& out) {
-  out << event.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n' << std::flush;
+  out << event.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n' << std::flush;
 }
 
 }  // namespace

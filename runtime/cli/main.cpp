@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
@@ -16,6 +17,7 @@
 namespace {
 
 sherd::CancelToken gCancel;
+std::atomic_flag gInterrupted;  ///< gCancel is set by failures, too
 bool gEvents = false;
 
 void say(int file, std::string_view text) {
@@ -34,7 +36,7 @@ extern "C" void onAlarm(int) {
 }
 
 extern "C" void onSignal(int) {
-  if (gCancel.cancelled()) return;
+  if (gInterrupted.test_and_set()) return;
   gCancel.cancel();
   itimerval timer{};
   timer.it_value.tv_usec = kPatience;

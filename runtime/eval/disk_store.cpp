@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <filesystem>
 #include <mutex>
+#include <new>
 #include <unordered_map>
 
 #include "eval/history_files.h"
@@ -44,6 +46,19 @@ class LiveValues {
   std::unordered_map<Digest, Live> values_;
   std::size_t sweepAt_ = kLeast;
 };
+
+/// What an exception of a value's type says to a user; to be called where it is caught.
+std::string caught() {
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+    return "out of memory";
+  } catch (const std::exception& e) {
+    return e.what();
+  } catch (...) {
+    return "an unknown exception";
+  }
+}
 
 Digest pathKey(const std::string& path) {
   static const std::string kPrefix = "file:";
@@ -162,13 +177,23 @@ void DiskStore::refresh() { impl_->records.refresh(); }
 bool DiskStore::hasObject(const Digest& digest) const { return impl_->objects.has(digest); }
 
 Value DiskStore::load(const ValueType& type, const Digest& digest) {
-  auto data = impl_->load(type, digest);
-  return data == nullptr ? Value() : Value(type, std::move(data));
+  try {
+    auto data = impl_->load(type, digest);
+    return data == nullptr ? Value() : Value(type, std::move(data));
+  } catch (...) {
+    impl_->directory.warn("a " + type.name + " can't be loaded from the cache: " + caught());
+    return {};
+  }
 }
 
 bool DiskStore::save(const Value& value, const Digest& digest, double ms) {
   if (value.empty()) return false;
-  const bool kept = impl_->save(value.type(), value.data(), digest, ms);
+  bool kept = false;
+  try {
+    kept = impl_->save(value.type(), value.data(), digest, ms);
+  } catch (...) {
+    impl_->directory.warn("a " + value.type().name + " is not kept in the cache: " + caught());
+  }
   // A run of days must not outgrow the bound until its end.
   if (impl_->savedBytes > impl_->mostBytes / 8 + (std::uint64_t{1} << 20)) impl_->collect(impl_->mostBytes);
   return kept;

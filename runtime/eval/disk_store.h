@@ -37,7 +37,8 @@ namespace sherd {
 
 struct DiskStoreOptions {
   std::uint64_t mostBytes = std::uint64_t{10} << 30;  ///< of objects; records are bounded by a tenth of it
-  /// Told once when the store turns out not to be writable; from any thread, and not to call the store.
+  /// Told once when the store turns out not to be writable, and of each value that can't be saved or loaded
+  /// because its type throws or the memory doesn't suffice; from any thread, and not to call the store.
   std::function<void(const std::string&)> onWarning;
 };
 
@@ -76,9 +77,9 @@ class DiskStore {
 
   /// Whether the value is there, as far as its file's name tells.
   bool hasObject(const Digest& digest) const;
-  /// The value, with its parts; empty where it isn't there in full and sound. Reading marks it as used.
-  /// Values that were loaded or saved before and are still alive in this process, parts among them, are
-  /// shared, not loaded again.
+  /// The value, with its parts; empty where it isn't there in full and sound, or memory doesn't suffice.
+  /// Reading marks it as used. Values that were loaded or saved before and are still alive in this process,
+  /// parts among them, are shared, not loaded again.
   Value load(const ValueType& type, const Digest& digest);
   /// Keeps the value and its parts. `ms` is what making it took: evicting weighs that against the bytes.
   /// False where it could not be kept, or its type can't be.

@@ -29,20 +29,6 @@ class ProgressFilter {
   std::atomic<int> last_{0};
 };
 
-Result<void> callNode(const NodeType& type, const ParamValues& params, NodeIo& io) {
-  try {
-    return type.run(params, io);
-  } catch (const std::bad_alloc&) {
-    return failure("out of memory", "use a smaller model or a coarser resolution");
-  } catch (const std::exception& e) {
-    return failure("an exception that the node didn't catch: " + std::string(e.what()),
-                   "this is a mistake in " + type.name + ", please report it");
-  } catch (...) {
-    return failure("an unknown exception that the node didn't catch",
-                   "this is a mistake in " + type.name + ", please report it");
-  }
-}
-
 Digest digestOf(const Value& value, std::span<const WireValue> inputs) {
   for (const WireValue& input : inputs)
     if (!input.value.empty() && input.value.address() == value.address() &&
@@ -67,6 +53,23 @@ std::optional<Error> collect(const NodeType& type, const NodeIo& io, std::span<c
     outputs[static_cast<std::size_t>(declared - type.outputs.data())] = {value, digestOf(value, inputs)};
   }
   return std::nullopt;
+}
+
+/// Runs the node and takes its outputs over. Hashing them is the node's affair, too: its value types do it.
+std::optional<Error> callNode(const NodeType& type, const ParamValues& params, NodeIo& io,
+                              std::span<const WireValue> inputs, Outputs& outputs) {
+  try {
+    if (const Result<void> done = type.run(params, io); !done.ok()) return done.error();
+    return collect(type, io, inputs, outputs);
+  } catch (const std::bad_alloc&) {
+    return failure("out of memory", "use a smaller model or a coarser resolution");
+  } catch (const std::exception& e) {
+    return failure("an exception that the node didn't catch: " + std::string(e.what()),
+                   "this is a mistake in " + type.name + ", please report it");
+  } catch (...) {
+    return failure("an unknown exception that the node didn't catch",
+                   "this is a mistake in " + type.name + ", please report it");
+  }
 }
 
 /// Hands the inputs over. An Error where a required one is missing.
@@ -126,12 +129,8 @@ NodeResult runNode(const Graph& graph, int i, const ParamValues& params, std::sp
   NodeIo io(exec);
   result.error = setInputs(graph, node, inputs, io);
   if (result.error) return result;
-  const Result<void> done = callNode(*node.type, params, io);
+  result.error = callNode(*node.type, params, io, inputs, result.outputs);
   result.written = io.written();
-  if (done.ok())
-    result.error = collect(*node.type, io, inputs, result.outputs);
-  else
-    result.error = done.error();
   return result;
 }
 

@@ -156,9 +156,13 @@ Result<void> Directory::claim() {
 }
 
 void Directory::writeFailed(int error) {
-  if (!writable_.exchange(false) || !warn_) return;
-  warn_("the cache in '" + path_ + "' can't be written: " + messageOf(error) +
-        "; results of this run are not kept");
+  if (!writable_.exchange(false)) return;
+  warn("the cache in '" + path_ + "' can't be written: " + messageOf(error) +
+       "; results of this run are not kept");
+}
+
+void Directory::warn(const std::string& text) const {
+  if (warn_) warn_(text);
 }
 
 OwnFile Directory::create(std::string_view folder, std::string_view prefix) const {

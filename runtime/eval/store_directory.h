@@ -73,6 +73,8 @@ class Directory {
   /// False from the first failure to write on.
   bool writable() const { return writable_; }
   void writeFailed(int error);
+  /// One line for the user.
+  void warn(const std::string& text) const;
 
   /// A new, empty file under a random name that begins with `prefix`.
   OwnFile create(std::string_view folder, std::string_view prefix) const;

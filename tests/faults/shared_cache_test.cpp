@@ -1,0 +1,91 @@
+// Several processes on one cache, one of which may be emptying it.
+#include "faults/program_process.h"
+
+namespace sherd::faults {
+namespace {
+
+/// Edits of a few kinds, so that the processes often want the same result.
+std::vector<std::string> randomEdits(Random& random) {
+  std::vector<std::string> edits;
+  for (const char* node : {"a0", "a2", "b1", "c1"})
+    if (random.below(3) == 0)
+      edits.insert(edits.end(), {"--set", std::string(node) + ".seed=" + std::to_string(random.below(3))});
+  return edits;
+}
+
+/// What a run with these edits writes, found out once without a cache.
+class Uncached {
+ public:
+  explicit Uncached(const Weave& weave) : weave_(weave) {}
+  const std::map<std::string, std::string>& files(const std::vector<std::string>& edits) {
+    auto& files = known_[edits];
+    if (files.empty()) files = weave_.undisturbed(edits);
+    return files;
+  }
+
+ private:
+  const Weave& weave_;
+  std::map<std::vector<std::string>, std::map<std::string, std::string>> known_;
+};
+
+/// One of the processes of a round, with outputs of its own.
+struct Runner {
+  std::string out;
+  std::vector<std::string> edits;
+  std::unique_ptr<Process> process;
+
+  void start(const Weave& weave, Random& random) {
+    edits = randomEdits(random);
+    std::vector<std::string> words = edits;
+    words.insert(words.end(), {"--var", "out=" + out});
+    process = std::make_unique<Process>(weave.run(words), weave.root());
+  }
+  void expectRight(Uncached& uncached, const std::string& when) {
+    const Ended ended = process->wait();
+    ASSERT_EQ(ended.exitCode, 0) << ended.out << ended.err << when;
+    EXPECT_EQ(ended.err, "") << when;
+    expectSameFiles(filesBelow(out), uncached.files(edits), when);
+  }
+};
+
+void runSideBySide(int rounds, std::uint64_t seed) {
+  const ScratchDirectory scratch;
+  const Weave weave(scratch, {}, 2);
+  Uncached uncached(weave);
+  Random random(seed);
+  Runner runners[2];
+  for (int k = 0; k < 2; ++k) runners[k].out = weave.file("out" + std::to_string(k));
+  for (int round = 0; round < rounds && !testing::Test::HasFailure(); ++round) {
+    for (Runner& runner : runners) runner.start(weave, random);
+    for (Runner& runner : runners) runner.expectRight(uncached, "round " + std::to_string(round));
+  }
+  const Ended verified = runSherd({"cache", "verify", "--cache", weave.file("cache")}, weave.root());
+  EXPECT_EQ(verified.exitCode, 0);
+  EXPECT_EQ(verified.out, "all is sound\n");
+}
+
+void runWhileEmptied(int rounds, std::uint64_t seed) {
+  const ScratchDirectory scratch;
+  const Weave weave(scratch, {}, 2);
+  Uncached uncached(weave);
+  Random random(seed);
+  Runner runner{weave.file("out"), {}, nullptr};
+  int emptied = 0;
+  for (int round = 0; round < rounds && !testing::Test::HasFailure(); ++round) {
+    runner.start(weave, random);
+    for (int k = 0; k < 6; ++k, ++emptied) {
+      const Ended gc = runSherd({"cache", "gc", "--max", "0", "--cache", weave.file("cache")}, weave.root());
+      ASSERT_EQ(gc.exitCode, 0) << gc.err;
+    }
+    runner.expectRight(uncached, "round " + std::to_string(round));
+  }
+  EXPECT_EQ(emptied, 6 * rounds);
+}
+
+TEST(SharedCache, TwoProcessesAgreeWithNone) { runSideBySide(8, 1); }
+TEST(SharedCacheSlow, TwoProcessesAgreeWithNoneFor50Rounds) { runSideBySide(50, 2); }
+TEST(SharedCache, MayBeEmptiedAtAnyMoment) { runWhileEmptied(8, 3); }
+TEST(SharedCacheSlow, MayBeEmptiedAtAnyMomentFor50Rounds) { runWhileEmptied(50, 4); }
+
+}  // namespace
+}  // namespace sherd::faults
