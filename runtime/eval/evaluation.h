@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -106,7 +107,9 @@ class Evaluation {
   void work();
   void doJob(Job job);
   void load(Job job);
+  std::optional<NodeResult> attempt(int i);
   void run(int i);
+  void conclude(int i, const NodeResult& result, double ms, const ResultRecord& record, bool later);
   std::uint64_t keep(const ResultRecord& record, const Outputs& outputs);
   std::vector<WireValue> gather(const std::vector<Graph::Wire>& wires);
   ResultRecord recordOf(int i, const NodeResult& result, double ms) const;

@@ -62,8 +62,8 @@ void Evaluation::dispatch() {
   for (; starting > 0; --starting) group_->run([this] { work(); });
 }
 
-/// Does jobs one after the other as long as they are quick: handing each to a new task takes longer than many of
-/// them. Not for long, since the thread may be one that waits inside of a node.
+/// Does jobs one after the other as long as they are quick: handing each to a new task takes longer than many
+/// of them. Not for long, since the thread may be one that waits inside of a node.
 void Evaluation::work() {
   constexpr std::chrono::microseconds kShift(500);
   const auto start = Clock::now();
@@ -181,8 +181,8 @@ void Evaluation::warnOfDifference(int i, NodeResult& result) {
     }
 }
 
-void Evaluation::run(int i) {
-  const auto start = Clock::now();
+/// Runs the node and tells what came of it: nothing, where it was cancelled.
+std::optional<NodeResult> Evaluation::attempt(int i) {
   const Graph::Node& n = node(i);
   tell([i](EvalListener& listener) { listener.started(i); });
   NodeResult result;
@@ -198,55 +198,64 @@ void Evaluation::run(int i) {
   } else {
     result.error = params.error();
   }
-  const double ms = msSince(start);
   // Under cancellation parallel loops leave blocks out, so neither result nor error of the node means
   // anything; but files that it says it wrote are written.
-  const bool isVoid = token_.cancelled() && !(n.type->writesFiles && !result.error);
-  if (!isVoid && !result.error) warnOfDifference(i, result);
-  ResultRecord record;
-  if (!result.error && !isVoid) record = recordOf(i, result, ms);
-  const bool isWorthIt =
-      options_.disk != nullptr && !result.error && !isVoid &&
+  if (token_.cancelled() && !(n.type->writesFiles && !result.error)) return std::nullopt;
+  if (!result.error) warnOfDifference(i, result);
+  return result;
+}
+
+void Evaluation::run(int i) {
+  const auto start = Clock::now();
+  const std::optional<NodeResult> result = attempt(i);
+  if (!result) return;  // it is reported as skipped in the end
+  const double ms = msSince(start);
+  if (result->error) return conclude(i, *result, ms, {}, false);
+  const ResultRecord record = recordOf(i, *result, ms);
+  const bool isKept =
+      options_.disk != nullptr &&
       std::any_of(record.outputs.begin(), record.outputs.end(), [&](const OutputRecord& output) {
         return !output.empty() && worthKeeping(ms, output.bytes);
       });
-  if (!result.error && !isVoid) {
-    cache_.insert({result.outputs, record});  // before anybody may look for this key again
-    if (options_.disk != nullptr && !isWorthIt) options_.disk->record(record);
-  }
-
-  std::vector<const NodeReport*> reports;
-  {
-    const std::lock_guard lock(mutex_);
-    Slot& s = slot(i);
-    s.report.ms = ms;
-    s.report.threads = threadLimit();
-    s.report.messages = result.messages;
-    s.report.written = result.written;
-    s.report.bytes = 0;
-    for (const OutputRecord& output : record.outputs) s.report.bytes += output.bytes;
-    if (isVoid) {
-      // It is reported as skipped in the end.
-    } else if (result.error) {
-      fail(i, *result.error);
-    } else {
-      complete(i, result.outputs);
-      endTwins(i);
-      if (!isWorthIt) report(i, NodeState::Run);
-      slot(i).reported = true;
-      release(i);
-    }
-    drain();
-    reports.swap(outbox_);
-  }
-  tellReports(std::move(reports));
-  if (!isWorthIt) return;
+  cache_.insert({result->outputs, record});  // before anybody may look for this key again
+  if (options_.disk != nullptr && !isKept) options_.disk->record(record);
+  conclude(i, *result, ms, record, isKept);
+  if (!isKept) return;
   dispatch();  // what waited for this starts while this is written
-  const std::uint64_t kept = keep(record, result.outputs);
+  const std::uint64_t kept = keep(record, result->outputs);
+  std::vector<const NodeReport*> reports;
   {
     const std::lock_guard lock(mutex_);
     slot(i).report.kept = kept;
     report(i, NodeState::Run);
+    reports.swap(outbox_);
+  }
+  tellReports(std::move(reports));
+}
+
+/// Hands on what came of a node. With `later` its report waits until it is on disk.
+void Evaluation::conclude(int i, const NodeResult& result, double ms, const ResultRecord& record,
+                          bool later) {
+  std::vector<const NodeReport*> reports;
+  {
+    const std::lock_guard lock(mutex_);
+    NodeReport& own = slot(i).report;
+    own.ms = ms;
+    own.threads = threadLimit();
+    own.messages = result.messages;
+    own.written = result.written;
+    own.bytes = 0;
+    for (const OutputRecord& output : record.outputs) own.bytes += output.bytes;
+    if (result.error) {
+      fail(i, *result.error);
+    } else {
+      complete(i, result.outputs);
+      endTwins(i);
+      if (!later) report(i, NodeState::Run);
+      slot(i).reported = true;
+      release(i);
+    }
+    drain();
     reports.swap(outbox_);
   }
   tellReports(std::move(reports));

@@ -23,6 +23,7 @@ namespace {
 
 constexpr const char* kMarker = "sherd-cache";
 constexpr std::string_view kMarkerText = "This directory is a cache of sherd, format 1.\n";
+constexpr int kMostAttempts = 16;  // at what another process may get in the way of
 constexpr std::array<const char*, 4> kFolders{"records", "objects", "history", "tmp"};
 constexpr std::time_t kDay = 86400;
 
@@ -167,7 +168,7 @@ void Directory::warn(const std::string& text) const {
 
 OwnFile Directory::create(std::string_view folder, std::string_view prefix) const {
   OwnFile file;
-  for (int attempt = 0; attempt < 16; ++attempt) {
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     file.path = at(folder) + '/' + std::string(prefix) + randomName();
     file.descriptor = Descriptor(
         ::open(file.path.c_str(), O_RDWR | O_APPEND | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
@@ -192,7 +193,8 @@ OwnFile Directory::create(std::string_view folder, std::string_view prefix) cons
 bool Directory::moveInto(const OwnFile& file, const std::string& relative) {
   const std::string path = at(relative);
   int error = ::rename(file.path.c_str(), path.c_str()) == 0 ? 0 : errno;
-  if (error == ENOENT) {
+  // Another process that evicts may remove the folder, empty as it is, before the file is in it.
+  for (int attempt = 0; attempt < kMostAttempts && error == ENOENT; ++attempt) {
     ::mkdir(path.substr(0, path.rfind('/')).c_str(), 0700);
     error = ::rename(file.path.c_str(), path.c_str()) == 0 ? 0 : errno;
   }

@@ -59,7 +59,7 @@ TEST_F(DiskStoreTest, AnEmptyStoreKnowsNothing) {
   EXPECT_EQ(store->stats().records + store->stats().objects, 0u);
   EXPECT_EQ(store->collect(0), 0u);
   EXPECT_TRUE(store->verify().empty());
-  EXPECT_TRUE(warnings.empty());
+  EXPECT_TRUE(warnings.empty()) << warnings.front();
 }
 
 TEST_F(DiskStoreTest, MakesItsDirectoryForTheUserAlone) {
@@ -295,7 +295,7 @@ TEST_F(DiskStoreTest, WhatCannotBeKeptIsNot) {
   EXPECT_FALSE(store->save(big, big.digest(), 5));
   EXPECT_TRUE(store->load(valueType<Fleeting>(), fleeting.digest()).empty());
   EXPECT_EQ(store->stats().objects, 0u);
-  EXPECT_TRUE(warnings.empty());
+  EXPECT_TRUE(warnings.empty()) << warnings.front();
 }
 
 TEST_F(DiskStoreTest, EvictsTheCheapAndTheLongUnusedFirst) {
@@ -379,7 +379,7 @@ TEST_F(DiskStoreTest, EvictionWhileAnotherLoadsIsAMissAtWorst) {
   evicting.join();
   EXPECT_GT(misses, 20);
   EXPECT_GT(hits, 0);
-  EXPECT_TRUE(warnings.empty());
+  EXPECT_TRUE(warnings.empty()) << warnings.front();
 }
 
 TEST_F(DiskStoreTest, ManyThreadsShareOneStore) {
@@ -499,7 +499,7 @@ TEST_F(DiskStoreTest, ClearRemovesAllResultsAndNothingElse) {
   EXPECT_TRUE(store->find(recordOf(3).key));  // recorded after it, by another
   for (const char* note : {"note.txt", "objects/note.txt", "records/note.txt"})
     EXPECT_EQ(readFile(root / note), "mine") << note;
-  EXPECT_TRUE(warnings.empty());
+  EXPECT_TRUE(warnings.empty()) << warnings.front();
 }
 
 TEST(DiskStoreDirectory, Defaults) {
