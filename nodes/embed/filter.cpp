@@ -112,6 +112,7 @@ Eigen::VectorXd diffusionFilter(const Eigen::VectorXd& eigenvalues, double time)
 
 Result<FittedFilter> fittedFilter(const BodyPart& part, const Eigen::MatrixXd& functions, const Exec& exec) {
   const PathGraph graph(part.positions, part.tets, part.neighbours);
+  if (exec.cancelled()) return cancelledError();
   const std::vector<Landmark> marks = landmarks(graph, part.positions.size(), exec);
   if (exec.cancelled()) return cancelledError();
   const double stretch = zigzag(part, marks, graph.meanLink());

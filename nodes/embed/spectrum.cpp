@@ -13,12 +13,15 @@ namespace {
 
 constexpr Eigen::Index kDense = 160;  ///< vertices up to which the dense solver is the faster one
 
+/// Thrown through Spectra, which can't be stopped otherwise.
+struct Cancelled {};
+
 /// y = M^½ (S − σ M)⁻¹ M^½ x, the shift-inverted form of M^−½ S M^−½. σ < 0 makes S − σ M positive definite.
 class ShiftInvert {
  public:
   using Scalar = double;
-  explicit ShiftInvert(const Laplacian& laplacian)
-      : laplacian_(laplacian), rootMass_(laplacian.mass.cwiseSqrt()) {}
+  ShiftInvert(const Laplacian& laplacian, const Exec& exec)
+      : laplacian_(laplacian), exec_(exec), rootMass_(laplacian.mass.cwiseSqrt()) {}
 
   void set_shift(double sigma) {
     Eigen::SparseMatrix<double> shifted = laplacian_.stiffness;
@@ -29,6 +32,7 @@ class ShiftInvert {
   Eigen::Index rows() const { return laplacian_.mass.size(); }
   Eigen::Index cols() const { return rows(); }
   void perform_op(const double* in, double* out) const {
+    if (exec_.cancelled()) throw Cancelled{};
     const Eigen::Map<const Eigen::VectorXd> x(in, rows());
     Eigen::Map<Eigen::VectorXd> y(out, rows());
     const Eigen::VectorXd right = rootMass_.cwiseProduct(x);
@@ -37,6 +41,7 @@ class ShiftInvert {
 
  private:
   const Laplacian& laplacian_;
+  const Exec& exec_;
   Eigen::VectorXd rootMass_;
   Eigen::CholmodSimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
 };
@@ -83,7 +88,7 @@ Result<Modes> lowestModes(const Laplacian& laplacian, int wanted, const Exec& ex
   // Close to the spectrum's lower end: λ_1 is at least of the order of 1 / (area or volume)^(2/d); an area's
   // order will do for both, since the shift only has to be small and the factor positive.
   const double scale = laplacian.stiffness.diagonal().sum() / laplacian.mass.sum();
-  ShiftInvert operation(laplacian);
+  ShiftInvert operation(laplacian, exec);
   const double shift = -1e-4 * scale / static_cast<double>(n);
   try {
     Spectra::SymEigsShiftSolver<ShiftInvert> solver(operation, count + 1, basis, shift);
@@ -98,6 +103,8 @@ Result<Modes> lowestModes(const Laplacian& laplacian, int wanted, const Exec& ex
       return failure("the eigenmodes of the tetrahedral mesh did not converge",
                      "ask for fewer dimensions, or measure with metric: euclidean", "dimensions");
     return asModes(laplacian, solver.eigenvalues(), solver.eigenvectors(), count);
+  } catch (const Cancelled&) {
+    return cancelledError();
   } catch (const std::exception& e) {
     return failure(std::string("the eigenmodes of the tetrahedral mesh could not be computed: ") + e.what(),
                    "measure with metric: euclidean", "metric");

@@ -21,11 +21,11 @@ struct FileMesh {
 
 // One reader per format that is read in full double precision. `content` is the whole file. Errors name the
 // line (text formats) or the byte (binary ones), what is wrong, and what would be right. No input crashes
-// them, and none makes them allocate more than a small multiple of the file's size.
-Result<FileMesh> readObj(std::string_view content);
-Result<FileMesh> readPly(std::string_view content);
-Result<FileMesh> readStl(std::string_view content);
-Result<FileMesh> readOff(std::string_view content);
+// them, and none makes them allocate more than a small multiple of the file's size. They end when cancelled.
+Result<FileMesh> readObj(std::string_view content, const Exec& exec = {});
+Result<FileMesh> readPly(std::string_view content, const Exec& exec = {});
+Result<FileMesh> readStl(std::string_view content, const Exec& exec = {});
+Result<FileMesh> readOff(std::string_view content, const Exec& exec = {});
 
 /// glTF, GLB, FBX and whatever else assimp knows, through assimp (single precision), with node transforms
 /// applied.

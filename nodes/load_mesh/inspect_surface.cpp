@@ -145,9 +145,13 @@ SurfaceReport inspectSurface(const TriMesh& mesh, const Exec& exec) {
   report.nonFinite = nonFiniteVertices(mesh);
   if (report.empty || report.nonFinite) return report;
   const EdgeTable edges = buildEdgeTable(mesh.triangles, mesh.positions.size());
+  if (exec.cancelled()) return report;
   inspectEdges(mesh, edges, report);
+  if (exec.cancelled()) return report;
   inspectVertices(mesh, edges, report);
+  if (exec.cancelled()) return report;
   inspectTriangles(mesh, report);
+  if (exec.cancelled()) return report;
   const SelfIntersections crossings = findSelfIntersections(mesh.positions, mesh.triangles, exec);
   if (exec.cancelled()) return report;
   if (crossings.pairs > 0) {

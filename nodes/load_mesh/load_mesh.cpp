@@ -61,7 +61,7 @@ Result<std::string> readContent(const std::string& file) {
   return content;
 }
 
-Result<FileMesh> readAny(const std::string& file) {
+Result<FileMesh> readAny(const std::string& file, const Exec& exec) {
   const std::string extension = extensionOf(file);
   const auto reader = extension == ".obj"   ? readObj
                       : extension == ".ply" ? readPly
@@ -70,14 +70,14 @@ Result<FileMesh> readAny(const std::string& file) {
                                             : nullptr;
   if (reader == nullptr) return readWithAssimp(file);
   SHERD_ASSIGN(const std::string content, readContent(file));
-  return reader(content);
+  return reader(content, exec);
 }
 
 /// Reads, and puts the file's name before what the reader complains of.
-Result<FileMesh> readFile(const std::string& file) {
+Result<FileMesh> readFile(const std::string& file, const Exec& exec) {
   SHERD_CHECK(checkFile(file));
-  Result<FileMesh> mesh = readAny(file);
-  if (mesh.ok()) return mesh;
+  Result<FileMesh> mesh = readAny(file, exec);
+  if (mesh.ok() || mesh.error().kind == Error::Kind::Cancelled) return mesh;
   Error error = mesh.error();
   if (error.what.find(file) == std::string::npos) error.what = file + ": " + error.what;
   if (error.port.empty()) error.port = "file";
@@ -163,7 +163,7 @@ void toMetres(TriMesh& mesh) {
 }
 
 Result<TriMesh> load(const LoadMeshParams& params, const Exec& exec) {
-  SHERD_ASSIGN(FileMesh file, readFile(params.file));
+  SHERD_ASSIGN(FileMesh file, readFile(params.file, exec));
   const std::string name = fs::path(params.file).filename().string();
   TriMesh& mesh = file.mesh;
   mesh.source = params.file;
@@ -181,7 +181,9 @@ Result<TriMesh> load(const LoadMeshParams& params, const Exec& exec) {
                    "set a smaller `unit` or `length`", params.length > 0 ? "length" : "unit");
   sayWelded(weld(mesh), name, exec);
   SHERD_CHECK(checkAttributes(mesh, params.file));
+  if (exec.cancelled()) return cancelledError();
   const Turned turned = orient(mesh);
+  if (exec.cancelled()) return cancelledError();
   exec.progress(0.6);
   report = inspectSurface(mesh, exec);
   if (exec.cancelled()) return cancelledError();

@@ -22,11 +22,12 @@ constexpr std::string_view kIgnored[] = {
 
 class ObjReader {
  public:
-  explicit ObjReader(std::string_view content)
-      : scan_(withoutByteOrderMark(content), TextScanner::Comments | TextScanner::Joins) {}
+  ObjReader(std::string_view content, const Exec& exec)
+      : scan_(withoutByteOrderMark(content), TextScanner::Comments | TextScanner::Joins), exec_(exec) {}
 
   Result<FileMesh> read() {
     for (; !scan_.atEnd(); scan_.nextLine()) {
+      if (exec_.cancelled()) return cancelledError();
       const std::string_view keyword = scan_.word();
       if (!keyword.empty()) SHERD_CHECK(statement(keyword));
     }
@@ -235,6 +236,7 @@ class ObjReader {
   }
 
   TextScanner scan_;
+  const Exec& exec_;
   std::vector<Vec3> positions_, normals_;
   std::vector<Vec2> uvs_;
   std::vector<Vec4> colors_;  ///< per position; may end early
@@ -250,6 +252,8 @@ class ObjReader {
 
 }  // namespace
 
-Result<FileMesh> readObj(std::string_view content) { return ObjReader(content).read(); }
+Result<FileMesh> readObj(std::string_view content, const Exec& exec) {
+  return ObjReader(content, exec).read();
+}
 
 }  // namespace sherd

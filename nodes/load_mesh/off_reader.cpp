@@ -14,12 +14,14 @@ constexpr long long kMost = std::numeric_limits<Index>::max();
 
 class OffReader {
  public:
-  explicit OffReader(std::string_view content) : scan_(content, TextScanner::Comments) {}
+  OffReader(std::string_view content, const Exec& exec)
+      : scan_(content, TextScanner::Comments), exec_(exec) {}
 
   Result<FileMesh> read() {
     SHERD_CHECK(header());
-    for (long long i = 0; i < vertexCount_; ++i) SHERD_CHECK(vertex());
-    for (long long i = 0; i < faceCount_; ++i) SHERD_CHECK(face());
+    for (long long i = 0; i < vertexCount_ && !exec_.cancelled(); ++i) SHERD_CHECK(vertex());
+    for (long long i = 0; i < faceCount_ && !exec_.cancelled(); ++i) SHERD_CHECK(face());
+    if (exec_.cancelled()) return cancelledError();
     return assemble();
   }
 
@@ -147,6 +149,7 @@ class OffReader {
   }
 
   TextScanner scan_;
+  const Exec& exec_;
   bool hasUv_ = false, hasColor_ = false, hasNormal_ = false, colorsAreBytes_ = false;
   long long vertexCount_ = 0, faceCount_ = 0;
   std::vector<Vec3> positions_, normals_;
@@ -157,6 +160,8 @@ class OffReader {
 
 }  // namespace
 
-Result<FileMesh> readOff(std::string_view content) { return OffReader(withoutByteOrderMark(content)).read(); }
+Result<FileMesh> readOff(std::string_view content, const Exec& exec) {
+  return OffReader(withoutByteOrderMark(content), exec).read();
+}
 
 }  // namespace sherd

@@ -142,13 +142,15 @@ Slot slotNamed(const std::string& name) {
 template <class Body>
 class PlyReader {
  public:
-  PlyReader(const PlyHeader& header, Body body) : header_(header), body_(std::move(body)) {}
+  PlyReader(const PlyHeader& header, Body body, const Exec& exec)
+      : header_(header), body_(std::move(body)), exec_(exec) {}
 
   Result<FileMesh> read() {
     SHERD_CHECK(checkHeader());
     for (const PlyHeader::Element& e : header_.elements) {
       if (e.properties.empty()) continue;  // takes no place in the file
       for (std::size_t i = 0; i < e.count; ++i) {
+        if (exec_.cancelled()) return cancelledError();
         SHERD_CHECK(&e == vertexElement_ ? vertex(e) : &e == faceElement_ ? face(e) : passOver(e));
       }
     }
@@ -325,6 +327,7 @@ class PlyReader {
 
   const PlyHeader& header_;
   Body body_;
+  const Exec& exec_;
   const PlyHeader::Element* vertexElement_ = nullptr;
   const PlyHeader::Element* faceElement_ = nullptr;
   const PlyHeader::Property* indexList_ = nullptr;
@@ -340,13 +343,13 @@ class PlyReader {
 
 }  // namespace
 
-Result<FileMesh> readPly(std::string_view content) {
+Result<FileMesh> readPly(std::string_view content, const Exec& exec) {
   SHERD_ASSIGN(const PlyHeader header, readPlyHeader(content));
   if (header.format == PlyHeader::Format::Ascii) {
-    return PlyReader(header, AsciiBody(content.substr(header.size), header.lines + 1)).read();
+    return PlyReader(header, AsciiBody(content.substr(header.size), header.lines + 1), exec).read();
   }
   const bool bigEndian = header.format == PlyHeader::Format::BigEndian;
-  return PlyReader(header, BinaryBody(content, header.size, bigEndian)).read();
+  return PlyReader(header, BinaryBody(content, header.size, bigEndian), exec).read();
 }
 
 }  // namespace sherd

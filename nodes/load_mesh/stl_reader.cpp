@@ -47,7 +47,7 @@ Result<FileMesh> readBinary(std::string_view content, std::size_t count) {
 
 class AsciiStl {
  public:
-  explicit AsciiStl(std::string_view content) : scan_(content) {}
+  AsciiStl(std::string_view content, const Exec& exec) : scan_(content), exec_(exec) {}
 
   Result<FileMesh> read() {
     for (std::string_view w = scan_.wordOnAnyLine(); !w.empty(); w = scan_.wordOnAnyLine()) {
@@ -92,6 +92,7 @@ class AsciiStl {
 
   Result<void> solid() {
     for (;;) {
+      if (exec_.cancelled()) return cancelledError();
       const std::string_view w = scan_.wordOnAnyLine();
       if (is(w, "endsolid")) return {};
       if (!is(w, "facet")) return unexpected(w, "facet or endsolid");
@@ -118,6 +119,7 @@ class AsciiStl {
   }
 
   TextScanner scan_;
+  const Exec& exec_;
   FileMesh file_;
 };
 
@@ -126,7 +128,7 @@ bool startsAsAscii(std::string_view content) {
   return w == "solid" || w == "SOLID";
 }
 
-Result<FileMesh> readEither(std::string_view content) {
+Result<FileMesh> readEither(std::string_view content, const Exec& exec) {
   const bool hasHeader = content.size() >= kHeader;
   const std::size_t count = hasHeader ? littleEndian32(content.data() + 80) : 0;
   const std::size_t size = kHeader + kFacet * count;
@@ -134,7 +136,7 @@ Result<FileMesh> readEither(std::string_view content) {
   // printable characters as a count make it 27 GB at least.
   if (hasHeader && content.size() == size) return readBinary(content, count);
   const std::string_view text = withoutByteOrderMark(content);
-  if (startsAsAscii(text)) return AsciiStl(text).read();
+  if (startsAsAscii(text)) return AsciiStl(text, exec).read();
   if (!hasHeader) {
     return failure(
         "an STL file of " + std::to_string(content.size()) + " bytes",
@@ -147,8 +149,8 @@ Result<FileMesh> readEither(std::string_view content) {
 
 }  // namespace
 
-Result<FileMesh> readStl(std::string_view content) {
-  Result<FileMesh> file = readEither(content);
+Result<FileMesh> readStl(std::string_view content, const Exec& exec) {
+  Result<FileMesh> file = readEither(content, exec);
   if (file.ok() && file->mesh.triangles.empty()) {
     return failure("the STL file has no triangles", "export the model as a triangle mesh");
   }

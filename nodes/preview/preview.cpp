@@ -45,14 +45,14 @@ std::string countOf(std::size_t pieces) {
 }
 
 Result<std::vector<Panel>> makePanels(const Fragments& f, const EnergyField* energy,
-                                      const PreviewParams& params) {
+                                      const PreviewParams& params, const Exec& exec) {
   const TriMesh& body = *f.tets->surface;
   const PictureSpace space = PictureSpace::of(body);
   const std::vector<Vec3> normals = shadingNormals(body);
   std::vector<Panel> panels;
-  SHERD_ASSIGN(Scene before, Scene::make(wholeSoup(body, normals, space, kClay)));
+  SHERD_ASSIGN(Scene before, Scene::make(wholeSoup(body, normals, space, kClay), exec));
   panels.push_back({std::move(before), "before", {}});
-  SHERD_ASSIGN(Scene pieces, Scene::make(piecesSoup(f, normals, space, params.explode)));
+  SHERD_ASSIGN(Scene pieces, Scene::make(piecesSoup(f, normals, space, params.explode), exec));
   panels.push_back({std::move(pieces), countOf(f.pieces.size()), {}});
   if (energy == nullptr) return panels;
   const TriMesh& shown = *energy->tets->surface;
@@ -61,7 +61,7 @@ Result<std::vector<Panel>> makePanels(const Fragments& f, const EnergyField* ene
   Soup soup = wholeSoup(shown, &shown == &body ? normals : shadingNormals(shown), space, kClay);
   for (const Triangle& t : shown.triangles)
     for (const Index v : t) soup.values.push_back(scale.place(densities[at(v)]));
-  SHERD_ASSIGN(Scene strained, Scene::make(std::move(soup)));
+  SHERD_ASSIGN(Scene strained, Scene::make(std::move(soup), exec));
   panels.push_back(
       {std::move(strained), scale.high > 0 ? "strain energy, J/m^3" : "no strain energy", scale});
   return panels;
@@ -109,7 +109,7 @@ Picture toPicture(const Canvas& canvas) {
 Result<Picture> renderPreview(const Fragments& f, const EnergyField* energy, const PreviewParams& params,
                               const Exec& exec) {
   SHERD_CHECK(checkInput(f, energy, params));
-  SHERD_ASSIGN(const std::vector<Panel> panels, makePanels(f, energy, params));
+  SHERD_ASSIGN(const std::vector<Panel> panels, makePanels(f, energy, params, exec));
   const int count = static_cast<int>(panels.size());
   // One camera for all, so that sizes can be compared; the pieces moved apart need the most room.
   std::vector<Vec3f> points;

@@ -33,6 +33,9 @@ RTCRay rayFrom(const Vec3f& origin, const Vec3f& direction, float reach) {
   return ray;
 }
 
+/// What Embree asks while it builds a scene; false ends that.
+bool goOn(void* exec, double /*share*/) { return !static_cast<const Exec*>(exec)->cancelled(); }
+
 template <class T>
 T interpolate(const std::vector<T>& perCorner, std::size_t triangle, float u, float v) {
   const T* first = perCorner.data() + 3 * triangle;
@@ -46,7 +49,8 @@ Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 const Soup& Scene::soup() const { return impl_->soup; }
 
-Result<Scene> Scene::make(Soup soup) {
+Result<Scene> Scene::make(Soup soup, const Exec& exec) {
+  if (exec.cancelled()) return cancelledError();
   auto impl = std::make_unique<Impl>();
   impl->soup = std::move(soup);
   impl->device = rtcNewDevice("threads=1,set_affinity=0");
@@ -66,7 +70,10 @@ Result<Scene> Scene::make(Soup soup) {
     rtcAttachGeometry(impl->scene, geometry);
   }
   rtcReleaseGeometry(geometry);
+  rtcSetSceneProgressMonitorFunction(impl->scene, &goOn, const_cast<Exec*>(&exec));
   rtcCommitScene(impl->scene);
+  rtcSetSceneProgressMonitorFunction(impl->scene, nullptr, nullptr);
+  if (exec.cancelled()) return cancelledError();
   if (rtcGetDeviceError(impl->device) != RTC_ERROR_NONE)
     return failure("Embree, which traces the picture's rays, cannot hold the scene",
                    "there may be too little memory");

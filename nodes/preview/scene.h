@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/exec.h"
 #include "base/result.h"
 #include "preview/colour.h"
 
@@ -29,8 +30,9 @@ struct Hit {
 
 class Scene {
  public:
-  /// Builds the search tree on one thread, so that ties between triangles fall the same way each time.
-  static Result<Scene> make(Soup soup);
+  /// Builds the search tree on one thread, so that ties between triangles fall the same way each time. Ends
+  /// when cancelled.
+  static Result<Scene> make(Soup soup, const Exec& exec);
   ~Scene();
   Scene(Scene&&) noexcept;
 

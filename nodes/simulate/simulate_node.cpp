@@ -142,6 +142,7 @@ NodeType simulateNode() {
   addBall(node);
   addMaterial(node);
   addContact(node);
+  node.uninterruptible("CHOLMOD's factorization", 150);  // of 20,000 tetrahedra
   node.output<EnergyField>("energy", "strain energy per tetrahedron and node");
   node.output<Impact>("impact", "contacts and motion at the first impact");
   node.output<double>("work", "total strain energy, J");

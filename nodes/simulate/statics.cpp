@@ -93,8 +93,9 @@ Result<Statics> Statics::factor(std::shared_ptr<const TetMesh> mesh, double pois
     addGauge(stiffness, nodes, members[p], startsHere ? gaugeNode : -1);
   }
   if (exec.cancelled()) return cancelledError();
-  SHERD_ASSIGN(SparseCholesky cholesky,
-               SparseCholesky::factor(stiffness, nestedDissection(nodes, stiffness)));
+  const std::vector<Index> order = nestedDissection(nodes, stiffness);
+  if (exec.cancelled()) return cancelledError();
+  SHERD_ASSIGN(SparseCholesky cholesky, SparseCholesky::factor(stiffness, order));
 
   Statics statics(mesh, std::move(cholesky));
   statics.size_ = size;

@@ -29,13 +29,19 @@ class Arranger {
 
   Result<Arrangement> run() {
     number();
+    if (exec_.cancelled()) return cancelledError();
     findCrossings();
     if (exec_.cancelled()) return cancelledError();
     SHERD_CHECK(orderCrossings());
+    if (exec_.cancelled()) return cancelledError();
     placeCrossings();
+    if (exec_.cancelled()) return cancelledError();
     SHERD_CHECK(labelSurface());
+    if (exec_.cancelled()) return cancelledError();
     SHERD_CHECK(classifyCrack());
+    if (exec_.cancelled()) return cancelledError();
     SHERD_CHECK(pairSegments());
+    if (exec_.cancelled()) return cancelledError();
     findEqualPositions();
     return std::move(a_);
   }

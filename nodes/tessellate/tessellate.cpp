@@ -15,6 +15,7 @@ Result<Fragments> tessellate(const Partition& cells, const TessellateParams& par
   const std::shared_ptr<const TetMesh>& tets = cells.embedding->tets;
   const TriMesh& surface = *tets->surface;
   const CrackComplex complex = canonicalCrackComplex(cells);
+  if (exec.cancelled()) return cancelledError();
   exec.progress(0.1);
   SHERD_ASSIGN(const Arrangement arrangement, arrange(*tets, cells.label, complex, exec));
   if (exec.cancelled()) return cancelledError();

@@ -110,6 +110,8 @@ TEST(ObjReader, Errors) {
               "?' is no OBJ statement");
 }
 
+TEST(ObjReader, EndsWhenCancelled) { test::expectEndsWhenCancelled(readObj, kFull); }
+
 TEST(ObjReader, DamagedFiles) { test::expectNoCrashOnDamage(readObj, kFull); }
 
 TEST(ObjReader, SharedModel) {

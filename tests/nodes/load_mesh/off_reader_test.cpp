@@ -66,6 +66,10 @@ TEST(OffReader, Errors) {
   expectError(readOff("OFF\n2000000000 2000000000 0\n0 0 0\n"), "the file or the line ends");
 }
 
+TEST(OffReader, EndsWhenCancelled) {
+  test::expectEndsWhenCancelled(readOff, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+}
+
 TEST(OffReader, DamagedFiles) {
   test::expectNoCrashOnDamage(
       readOff, "CNOFF\n3 1 0\n0 0 0 0 0 2 255 0 51 255\n1 0 0 0 0 1 0 0 0 0\n0 1 0 1 0 0 0 0 0\n3 0 1 2 9\n");

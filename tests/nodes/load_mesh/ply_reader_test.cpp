@@ -156,6 +156,10 @@ TEST(PlyReader, BodyErrors) {
               "byte " + std::to_string(size) + ": the file ends too early");
 }
 
+TEST(PlyReader, EndsWhenCancelled) {
+  for (const char* format : kFormats) test::expectEndsWhenCancelled(readPly, everything(format));
+}
+
 TEST(PlyReader, DamagedFiles) {
   for (const char* format : kFormats) test::expectNoCrashOnDamage(readPly, everything(format));
 }

@@ -13,7 +13,7 @@
 
 namespace sherd::test {
 
-using Reader = Result<FileMesh> (*)(std::string_view);
+using Reader = Result<FileMesh> (*)(std::string_view, const Exec&);
 
 inline void expectError(const Result<FileMesh>& file, const std::string& part) {
   ASSERT_FALSE(file.ok()) << "expected an error with: " << part;
@@ -36,12 +36,24 @@ inline void expectConsistent(const FileMesh& file) {
 /// Reads a copy of exactly these bytes, so that a sanitizer sees a read behind them.
 inline void readDamaged(Reader reader, const std::string& content) {
   const std::vector<char> bytes(content.begin(), content.end());
-  const Result<FileMesh> file = reader(std::string_view(bytes.data(), bytes.size()));
+  const Result<FileMesh> file = reader(std::string_view(bytes.data(), bytes.size()), {});
   if (file.ok()) {
     expectConsistent(*file);
   } else {
     EXPECT_FALSE(file.error().what.empty());
   }
+}
+
+/// A file that is all right is not read to its end when nobody wants it any more.
+inline void expectEndsWhenCancelled(Reader reader, const std::string& content) {
+  ASSERT_TRUE(reader(content, {}).ok());
+  CancelToken token;
+  token.cancel();
+  Exec exec;
+  exec.cancel = &token;
+  const Result<FileMesh> file = reader(content, exec);
+  ASSERT_FALSE(file.ok());
+  EXPECT_EQ(file.error().kind, Error::Kind::Cancelled);
 }
 
 inline void expectNoCrashOnDamage(Reader reader, const std::string& content, int mutations = 3000) {

@@ -79,6 +79,11 @@ TEST(StlReader, Errors) {
   expectError(readStl("solid\n" + facet + "endsolid\nrubbish\n"), "line 10: 'rubbish'");
 }
 
+TEST(StlReader, EndsWhenCancelled) {
+  test::expectEndsWhenCancelled(readStl,
+                                "solid x\n" + asciiFacet(kFour[0], kFour[1], kFour[2]) + "endsolid x\n");
+}
+
 TEST(StlReader, DamagedFiles) {
   test::expectNoCrashOnDamage(readStl,
                               "solid x\n" + asciiFacet(kFour[0], kFour[1], kFour[2]) + "endsolid x\n");
