@@ -1,10 +1,15 @@
 #include "eval/lookup.h"
 
+#include "base/atomic_file.h"
+
 namespace sherd {
 
 const WrittenFile* firstChanged(const ResultRecord& record) {
+  // A run that was killed leaves a half-written file beside the old one: only the exporter may remove that.
   for (const WrittenFile& file : record.written)
-    if (!file.identity.exists() || FileIdentity::of(file.path) != file.identity) return &file;
+    if (!file.identity.exists() || FileIdentity::of(file.path) != file.identity ||
+        FileIdentity::of(partialName(file.path)).exists())
+      return &file;
   return nullptr;
 }
 

@@ -16,10 +16,11 @@ struct Known {
 };
 
 /// Nothing where no result is known, where the record doesn't fit the type's outputs, or where a file that
-/// the node wrote is missing or has been changed.
+/// the node wrote is missing or has been changed (firstChanged).
 std::optional<Known> lookUp(const NodeType& type, const Digest& key, Cache& cache, const DiskStore* disk);
 
-/// The first of the files that is not as it was written; null where all are.
+/// The first of the files that is not as it was written, or beside which a killed run left a half-written
+/// one; null where there is none.
 const WrittenFile* firstChanged(const ResultRecord& record);
 
 }  // namespace sherd

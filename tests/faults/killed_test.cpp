@@ -84,6 +84,20 @@ void killAndEdit(int rounds, std::uint64_t seed) {
   }
 }
 
+TEST(Killed, AHalfWrittenFileBesideFilesThatAreKnownGoes) {
+  const ScratchDirectory scratch;
+  const Weave weave(scratch, {}, 1);
+  EXPECT_EQ(weave.runToEnd().exitCode, 0);
+  const auto expected = weave.outputs();
+  for (const char* name : {"out/right/sherd_manifest.json.partial", "out/right/piece_2_crack.obj.partial"}) {
+    writeText(weave.file(name), "half");
+    weave.forgetLog();
+    EXPECT_EQ(weave.runToEnd().exitCode, 0);
+    EXPECT_EQ(weave.log(), std::vector<std::string>{"right"});
+    expectSameFiles(weave.outputs(), expected, name);
+  }
+}
+
 TEST(Killed, AnotherRunThanTheKilledOneCleansUp) { killAndEdit(10, 5); }
 TEST(KilledSlow, AnotherRunThanTheKilledOneCleansUpTwoHundredTimes) { killAndEdit(200, 6); }
 TEST(Killed, AnyMomentResumes) { killAtRandomMoments(20, 1); }
