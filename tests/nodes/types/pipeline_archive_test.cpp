@@ -81,7 +81,7 @@ TEST_P(PipelineArchiveSlow, SharedModel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, PipelineArchiveSlow,
-                         testing::Values("bunny", "spot", "horse", "bones_26_parts"));
+                         testing::Values("bunny", "spot", "horse", "knight"));
 
 }  // namespace
 }  // namespace sherd
