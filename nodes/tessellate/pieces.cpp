@@ -28,14 +28,14 @@ struct Face {
 
 class Assembler {
  public:
-  Assembler(const Arrangement& a, const ClippedMeshes& m, double minVolume, double density)
-      : a_(a), m_(m), minVolume_(minVolume), density_(density), positions_(a.positions) {}
+  Assembler(const Arrangement& a, const ClippedMeshes& m, double minVolume, double density, const Exec& exec)
+      : a_(a), m_(m), minVolume_(minVolume), density_(density), exec_(exec), positions_(a.positions) {}
 
   Fragments run() {
     gatherFaces();
-    splitIntoSolids();
-    mergeSmallSolids();
-    writePieces();
+    if (!exec_.cancelled()) splitIntoSolids();
+    if (!exec_.cancelled()) mergeSmallSolids();
+    if (!exec_.cancelled()) writePieces();
     return std::move(out_);
   }
 
@@ -93,6 +93,7 @@ class Assembler {
 
   void splitIntoSolids() {
     DisjointSets sets = joinShells();
+    if (exec_.cancelled()) return;
     std::map<std::pair<Index, std::size_t>, Solid> shells;
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       Solid& shell = shells[{faces_[f].cell, sets.find(f)}];
@@ -203,6 +204,7 @@ class Assembler {
     }
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const Index face = static_cast<Index>(f);
+      if (f % 4096 == 0 && exec_.cancelled()) return;
       writeFace(face, out_.pieces[at(pieceOf.at(ownerOf(face)))], pieceOf);
     }
     for (Piece& piece : out_.pieces) integrate(piece);
@@ -265,6 +267,7 @@ class Assembler {
   const Arrangement& a_;
   const ClippedMeshes& m_;
   double minVolume_, density_;
+  const Exec& exec_;
   std::span<const Vec3> positions_;
   std::vector<Face> faces_;
   std::vector<Solid> solids_;
@@ -277,8 +280,8 @@ class Assembler {
 }  // namespace
 
 Fragments assemblePieces(const Arrangement& arrangement, const ClippedMeshes& meshes, double minVolume,
-                         double density) {
-  return Assembler(arrangement, meshes, minVolume, density).run();
+                         double density, const Exec& exec) {
+  return Assembler(arrangement, meshes, minVolume, density, exec).run();
 }
 
 }  // namespace sherd

@@ -12,8 +12,9 @@ namespace sherd {
 /// Gathers each cell's skin and sheets, splits it into connected solids (joined by shared edges; a void
 /// belongs to the solid around it), lets solids smaller than `minVolume` (m³) join the neighbour with the
 /// largest contact area, and fills in all of Fragments but `tets`, `material`, and what the cells' search
-/// found. Solids without a neighbour stay, however small. Cost O(n log n) in the number of triangles.
+/// found. Solids without a neighbour stay, however small. When exec is cancelled it ends soon with something
+/// unfinished: check exec.cancelled() afterwards. Cost O(n log n) in the number of triangles.
 Fragments assemblePieces(const Arrangement& arrangement, const ClippedMeshes& meshes, double minVolume,
-                         double density);
+                         double density, const Exec& exec);
 
 }  // namespace sherd

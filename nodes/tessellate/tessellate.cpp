@@ -24,7 +24,9 @@ Result<Fragments> tessellate(const Partition& cells, const TessellateParams& par
   if (exec.cancelled()) return cancelledError();
   exec.progress(0.8);
   const double volume = solidVolume(surface.positions, surface.triangles);
-  Fragments result = assemblePieces(arrangement, meshes, params.minVolume * volume, cells.material.density);
+  Fragments result =
+      assemblePieces(arrangement, meshes, params.minVolume * volume, cells.material.density, exec);
+  if (exec.cancelled()) return cancelledError();
   result.tets = tets;
   result.material = cells.material;
   result.sites = cells.siteCount();
