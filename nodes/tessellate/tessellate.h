@@ -19,10 +19,16 @@
 
 namespace sherd {
 
+enum class CellMode { Exact, Canonical };
+enum class SurfaceMode { Original, Conforming };
+
 struct TessellateParams {
+  CellMode cells = CellMode::Exact;
+  SurfaceMode surface = SurfaceMode::Original;
   /// Connected parts of a cell smaller than this share of the body's volume join the neighbour with which
   /// they share the largest area. In [0, 1).
   double minVolume = 1e-5;
+  double minVolumeAbsolute = 0;  ///< m³
 };
 
 /// `cells.embedding->tets` encloses its surface, which is closed and free of self-intersections. Errors:
