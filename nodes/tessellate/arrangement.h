@@ -1,6 +1,6 @@
 // How the surface and the sheets cut each other: crossings, their order along edges, and the segments they
-// bound. Decided by exact predicates under Simulation of Simplicity, so that every pair of triangles that
-// meets does so in one segment with two ends; nothing here depends on a rounded coordinate.
+// bound. What fills it decides by exact predicates and consistent ties, so that every surface triangle that
+// meets a sheet polygon does so in one segment with two ends; nothing here depends on a rounded coordinate.
 #pragma once
 
 #include <array>
@@ -9,28 +9,28 @@
 
 #include "base/exec.h"
 #include "base/result.h"
-#include "geometry/edge_table.h"
-#include "tessellate/crack_complex.h"
+#include "tessellate/envelope.h"
+#include "tessellate/sheets.h"
 #include "types/tet_mesh.h"
 
 namespace sherd {
 
-/// An edge of one mesh through a triangle of the other.
+/// An edge of the surface through a sheet polygon, or an edge of the sheets through a surface triangle.
 struct Crossing {
-  Index edge;      ///< in its own mesh's EdgeTable
-  Index triangle;  ///< in the other mesh
-  bool fromFront;  ///< the edge's lower end lies in front of the triangle
+  Index edge;      ///< of the surface: in Arrangement::cutEdges; of the sheets: in Sheets::edges
+  Index through;   ///< the polygon, or the surface triangle
+  bool fromFront;  ///< the edge's lower end lies in front of it
   Index vertex;    ///< its number in Arrangement::positions
 };
 
-/// The segment in which a surface triangle and a crack triangle meet, directed so that on the surface (seen
-/// from outside) the crack triangle's back cell lies on its left.
+/// The segment in which a surface triangle and a sheet polygon meet, directed so that on the surface (seen
+/// from outside) the polygon's back cell lies on its left.
 struct Segment {
-  Index surface, crack;  ///< triangles
-  Index from, to;        ///< vertices
+  Index surface, polygon;
+  Index from, to;  ///< vertices
 };
 
-/// Crossings of one mesh's edges, grouped by edge and ordered along it from its lower end.
+/// Crossings grouped by edge and ordered along it from its lower end.
 struct EdgeCrossings {
   std::vector<Crossing> list;
   std::vector<Index> begin;  ///< per edge, into list; one more at the end
@@ -43,21 +43,33 @@ struct EdgeCrossings {
 /// firstNew).
 struct Arrangement {
   std::span<const Triangle> surface;
-  std::vector<Triangle> crack;  ///< the sheets' triangles with their numbers shifted by firstCrack
   std::vector<Vec3> positions;
   Index firstCrack = 0, firstNew = 0;
-  std::vector<Index> same;  ///< per vertex: the least-numbered one that rounding put on the same spot
-  EdgeTable surfaceEdges, crackEdges;  ///< crackEdges' ends are unshifted numbers of the complex
-  EdgeCrossings surfaceCrossings, crackCrossings;
-  std::vector<Segment> segments;    ///< by (surface, crack)
   std::vector<Index> surfaceLabel;  ///< per surface vertex: the cell that it lies in
-  std::vector<bool> crackInside;    ///< per crack vertex: lies inside of the surface
+
+  std::vector<Index> cutTriangles;  ///< surface triangles that a sheet crosses, ascending
+  std::vector<std::array<Index, 3>>
+      edgesOfCut;  ///< per cut triangle: its sides in cutEdges, −1 where nothing crosses
+  std::vector<std::array<Index, 2>> cutEdges;  ///< crossed surface edges: ends, ascending
+  EdgeCrossings surfaceCrossings;              ///< by cutEdges
+  std::vector<Segment> segments;               ///< by (surface, polygon)
+  std::vector<Index> segmentBegin;             ///< per cut triangle, into segments; one more at the end
+
+  EdgeCrossings sheetCrossings;                  ///< by Sheets::edges
+  std::vector<Index> byPolygonBegin, byPolygon;  ///< per polygon: the segments in it
+  std::vector<unsigned char> sheetInside;        ///< per sheet vertex: lies inside of the surface
 };
 
-/// `tets.surface` is closed, coherently oriented and free of self-intersections. Error where the pairing of
-/// ends does not come out even, which a surface that is not so can cause. Cost O(surface) for its edges plus
-/// O(candidate pairs).
-Result<Arrangement> arrange(const TetMesh& tets, std::span<const Index> nodeLabel,
-                            const CrackComplex& complex, const Exec& exec);
+/// The surface against exact sheets, with the predicates of symbolic_sign.h. `tets.surface` is closed,
+/// coherently oriented and free of self-intersections. Error where what was found does not fit together,
+/// which a surface that is not so can cause. Cost O(surface vertices) for their cells, plus O(triangles held
+/// by tetrahedra with a sheet).
+Result<Arrangement> arrangeExact(const TetMesh& tets, const ExactSheets& exact, const SiteValues& values,
+                                 const Exec& exec);
+
+/// The surface against sheets with rounded vertices, under Simulation of Simplicity of all (exact_points.h).
+/// `nodeLabel`: the cell of each node.
+Result<Arrangement> arrangeRounded(const TetMesh& tets, std::span<const Index> nodeLabel,
+                                   const Sheets& sheets, const Exec& exec);
 
 }  // namespace sherd

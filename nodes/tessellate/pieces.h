@@ -5,16 +5,17 @@
 #include "tessellate/arrangement.h"
 #include "tessellate/clip.h"
 #include "types/fragments.h"
-#include "types/partition.h"
 
 namespace sherd {
 
 /// Gathers each cell's skin and sheets, splits it into connected solids (joined by shared edges; a void
 /// belongs to the solid around it), lets solids smaller than `minVolume` (m³) join the neighbour with the
 /// largest contact area, and fills in all of Fragments but `tets`, `material`, and what the cells' search
-/// found. Solids without a neighbour stay, however small. When exec is cancelled it ends soon with something
-/// unfinished: check exec.cancelled() afterwards. Cost O(n log n) in the number of triangles.
-Fragments assemblePieces(const Arrangement& arrangement, const ClippedMeshes& meshes, double minVolume,
-                         double density, const Exec& exec);
+/// found. Solids without a neighbour stay, however small. `neighbours`: TetMesh::surfaceNeighbours. When exec
+/// is cancelled it ends soon with something unfinished: check exec.cancelled() afterwards. Cost O(surface +
+/// new triangles).
+Fragments assemblePieces(const Arrangement& arrangement, ClippedMeshes meshes,
+                         std::span<const Triangle> neighbours, double minVolume, double density,
+                         const Exec& exec);
 
 }  // namespace sherd

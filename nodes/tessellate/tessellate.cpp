@@ -1,31 +1,70 @@
 #include "tessellate/tessellate.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "geometry/solid.h"
+#include "geometry/surface_links.h"
 #include "tessellate/arrangement.h"
+#include "tessellate/canonical.h"
 #include "tessellate/clip.h"
 #include "tessellate/pieces.h"
 
 namespace sherd {
+namespace {
 
-Result<Fragments> tessellate(const Partition& cells, const TessellateParams& params, const Exec& exec) {
-  const std::shared_ptr<const TetMesh>& tets = cells.embedding->tets;
-  const TriMesh& surface = *tets->surface;
-  const CrackComplex complex = canonicalCrackComplex(cells);
+struct Cut {
+  Sheets sheets;
+  Arrangement arrangement;
+};
+
+Result<Cut> cutExactly(const TetMesh& tets, const Partition& cells, const Exec& exec) {
+  const SiteValues values(cells, exec);
+  if (exec.cancelled()) return cancelledError();
+  ExactSheets exact = exactSheets(tets, values, exec);
+  if (exec.cancelled()) return cancelledError();
+  exec.progress(0.3);
+  SHERD_ASSIGN(Arrangement arrangement, arrangeExact(tets, exact, values, exec));
+  return Cut{std::move(exact.sheets), std::move(arrangement)};
+}
+
+Result<Cut> cutCanonically(const TetMesh& tets, const Partition& cells, const Exec& exec) {
+  Cut cut{canonicalSheets(cells), {}};
   if (exec.cancelled()) return cancelledError();
   exec.progress(0.1);
-  SHERD_ASSIGN(const Arrangement arrangement, arrange(*tets, cells.label, complex, exec));
+  SHERD_ASSIGN(cut.arrangement, arrangeRounded(tets, cells.label, cut.sheets, exec));
+  return cut;
+}
+
+std::size_t emptyCells(const Partition& cells, const Arrangement& arrangement, const ClippedMeshes& meshes) {
+  std::vector<bool> holds(cells.siteCount(), false);
+  for (const Index cell : arrangement.surfaceLabel) holds[at(cell)] = true;
+  for (const SkinTriangle& t : meshes.skin) holds[at(t.cell)] = true;
+  for (const SheetTriangle& t : meshes.sheet) holds[at(t.front)] = holds[at(t.back)] = true;
+  return static_cast<std::size_t>(std::count(holds.begin(), holds.end(), false));
+}
+
+}  // namespace
+
+Result<Fragments> tessellate(const Partition& cells, const TessellateParams& params, const Exec& exec) {
+  std::shared_ptr<const TetMesh> tets = cells.embedding->tets;
+  if (tets->vertexTet.empty() || tets->surfaceNeighbours.empty()) {
+    auto linked = std::make_shared<TetMesh>(*tets);
+    linkSurface(*linked, exec);
+    tets = linked;
+  }
+  const TriMesh& surface = *tets->surface;
+  SHERD_ASSIGN(const Cut cut, params.cells == CellMode::Exact ? cutExactly(*tets, cells, exec)
+                                                              : cutCanonically(*tets, cells, exec));
   if (exec.cancelled()) return cancelledError();
   exec.progress(0.5);
-  const ClippedMeshes meshes = clip(arrangement, complex, exec);
+  ClippedMeshes meshes = clip(cut.arrangement, cut.sheets, exec);
   if (exec.cancelled()) return cancelledError();
   exec.progress(0.8);
+  const std::size_t forced = meshes.forced, empty = emptyCells(cells, cut.arrangement, meshes);
   const double volume = solidVolume(surface.positions, surface.triangles);
-  Fragments result =
-      assemblePieces(arrangement, meshes, params.minVolume * volume, cells.material.density, exec);
+  Fragments result = assemblePieces(cut.arrangement, std::move(meshes), tets->surfaceNeighbours,
+                                    std::max(params.minVolume * volume, params.minVolumeAbsolute),
+                                    cells.material.density, exec);
   if (exec.cancelled()) return cancelledError();
   result.tets = tets;
   result.material = cells.material;
@@ -33,14 +72,10 @@ Result<Fragments> tessellate(const Partition& cells, const TessellateParams& par
   result.energy = cells.energy;
   result.gamma = cells.gamma;
   result.degreeGiven = cells.degreeGiven;
-  result.counts.cutTets = complex.cutTets;
-  result.counts.crackTriangles = complex.triangles.size();
-  result.counts.cutSurfaceTriangles = meshes.cutSurfaceTriangles;
-  result.counts.forcedTriangles = meshes.forced;
-  std::vector<bool> holds(cells.siteCount(), false);
-  for (const SkinTriangle& t : meshes.skin) holds[at(t.cell)] = true;
-  for (const SheetTriangle& t : meshes.sheet) holds[at(t.front)] = holds[at(t.back)] = true;
-  result.counts.emptyCells = static_cast<std::size_t>(std::count(holds.begin(), holds.end(), false));
+  result.counts.cutTets = cut.sheets.cutTets;
+  result.counts.crackTriangles = cut.sheets.corners.size() - 2 * cut.sheets.polygons.size();
+  result.counts.forcedTriangles = forced;
+  result.counts.emptyCells = empty;
   return result;
 }
 

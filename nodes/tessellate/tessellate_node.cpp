@@ -32,6 +32,9 @@ NodeType tessellateNode() {
                                        "Cuts the surface into closed pieces along the cells.")
       .input<Partition>("cells", "the cells to cut along, from CVD")
       .optionalInput<TriMesh>("mesh", "the surface to cut; must be the one that the tetrahedra were made for")
+      .choice(
+          "cells", &TessellateParams::cells, {{"exact", CellMode::Exact}, {"canonical", CellMode::Canonical}},
+          "exact: where each site is nearest; canonical: the paper's four schemes on the labels at the nodes")
       .number(
           "min_volume", &TessellateParams::minVolume,
           {.min = 0,
@@ -39,6 +42,8 @@ NodeType tessellateNode() {
            .openMax = true,
            .help =
                "parts smaller than this share of the body's volume join the neighbour that they touch most"})
+      .number("min_volume_absolute", &TessellateParams::minVolumeAbsolute,
+              {.unit = "m³", .min = 0, .help = "the same as a volume; the larger of the two counts"})
       .output<Fragments>("pieces", "closed pieces, each with its outer skin and its crack faces")
       .run([](const TessellateParams& params, NodeIo& io) -> Result<void> {
         const auto cells = io.in<Partition>("cells");

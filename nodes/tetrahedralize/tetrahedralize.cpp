@@ -8,6 +8,7 @@
 #include <set>
 
 #include "geometry/solid.h"
+#include "geometry/surface_links.h"
 #include "tetrahedralize/cage_field.h"
 #include "tetrahedralize/enclosure.h"
 #include "tetrahedralize/inside_share.h"
@@ -338,6 +339,7 @@ class CageBuilder {
     cage.surface = mesh_;
     holdTriangles(cage, mesh_->positions, mesh_->triangles, exec_);
     fillInsideFractions(cage, mesh_->positions, mesh_->triangles, exec_);
+    linkSurface(cage, exec_);
     if (exec_.cancelled()) return cancelledError();
     cage.quality = measureQuality(cage, mesh_->positions, mesh_->triangles);
     exec_.progress(1);

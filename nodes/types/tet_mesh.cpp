@@ -13,13 +13,15 @@ void hashValue(Hasher& hasher, const TetMesh& mesh) {
   hashPart(hasher, mesh.surface);
   hasher.add(mesh.nodes).add(mesh.tets).add(mesh.neighbours).add(mesh.boundary);
   hasher.add(mesh.heldBegin).add(mesh.held).add(mesh.insideFraction);
+  hasher.add(mesh.vertexTet).add(mesh.surfaceNeighbours);
   hashBits(hasher, mesh.quality);
 }
 
 std::size_t byteSize(const TetMesh& mesh) {
   return (mesh.surface ? byteSize(*mesh.surface) : 0) + mesh.nodes.size() * sizeof(Vec3) +
          mesh.tets.size() * (2 * sizeof(Tetra) + sizeof(double)) + mesh.boundary.size() * sizeof(Triangle) +
-         (mesh.held.size() + mesh.heldBegin.size()) * sizeof(Index);
+         (mesh.held.size() + mesh.heldBegin.size() + mesh.vertexTet.size()) * sizeof(Index) +
+         mesh.surfaceNeighbours.size() * sizeof(Triangle);
 }
 
 void saveValue(ArchiveWriter& to, const TetMesh& mesh) {
@@ -30,6 +32,8 @@ void saveValue(ArchiveWriter& to, const TetMesh& mesh) {
   to.array(mesh.boundary);
   to.array(mesh.heldBegin);
   to.array(mesh.held);
+  to.array(mesh.vertexTet);
+  to.array(mesh.surfaceNeighbours);
   to.array(mesh.insideFraction);
   putBits(to, mesh.quality);
 }
@@ -45,12 +49,23 @@ bool heldIsSound(const TetMesh& mesh) {
          allInRange(mesh.held, 0, mesh.surface ? mesh.surface->triangles.size() : 0);
 }
 
+/// Either absent or one entry per vertex and triangle of the surface.
+bool linksAreSound(const TetMesh& mesh) {
+  const std::size_t vertices = mesh.surface ? mesh.surface->positions.size() : 0,
+                    triangles = mesh.surface ? mesh.surface->triangles.size() : 0;
+  return (mesh.vertexTet.empty() || mesh.vertexTet.size() == vertices) &&
+         allInRange(mesh.vertexTet, -1, mesh.tets.size()) &&
+         (mesh.surfaceNeighbours.empty() || mesh.surfaceNeighbours.size() == triangles) &&
+         allInRange(mesh.surfaceNeighbours, 0, triangles);
+}
+
 bool isSound(const TetMesh& mesh) {
   const std::size_t tets = mesh.tets.size();
   return allInRange(mesh.tets, 0, mesh.nodes.size()) && allInRange(mesh.boundary, 0, mesh.nodes.size()) &&
          (mesh.neighbours.empty() || mesh.neighbours.size() == tets) &&
          allInRange(mesh.neighbours, -1, tets) &&
-         (mesh.insideFraction.empty() || mesh.insideFraction.size() == tets) && heldIsSound(mesh);
+         (mesh.insideFraction.empty() || mesh.insideFraction.size() == tets) && heldIsSound(mesh) &&
+         linksAreSound(mesh);
 }
 
 }  // namespace
@@ -65,6 +80,8 @@ std::optional<TetMesh> loadValue(ArchiveReader& from, std::type_identity<TetMesh
   from.array(mesh.boundary);
   from.array(mesh.heldBegin);
   from.array(mesh.held);
+  from.array(mesh.vertexTet);
+  from.array(mesh.surfaceNeighbours);
   from.array(mesh.insideFraction);
   getBits(from, mesh.quality);
   if (!from.ok() || !isSound(mesh)) loaded.reset();

@@ -1,4 +1,4 @@
-#include "tessellate/crack_complex.h"
+#include "tessellate/canonical.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -18,13 +18,22 @@ class Builder {
   explicit Builder(const Partition& partition)
       : partition_(partition), tets_(*partition.embedding->tets), body_(centroidOf(partition)) {}
 
-  CrackComplex build() {
+  Sheets build() {
     for (std::size_t t = 0; t < tets_.tets.size(); ++t) addTet(static_cast<Index>(t));
     markCage();
-    return std::move(complex_);
+    for (const CrackTriangle& t : triangles_) {
+      sheets_.polygons.push_back({static_cast<Index>(sheets_.corners.size()), 3, t.front, t.back, t.tet});
+      sheets_.corners.insert(sheets_.corners.end(), t.corners.begin(), t.corners.end());
+    }
+    sheets_.connect();
+    return std::move(sheets_);
   }
 
  private:
+  struct CrackTriangle {
+    Triangle corners;
+    Index front, back, tet;
+  };
   using Key = Tetra;
   struct KeyHash {
     std::size_t operator()(const Key& k) const {
@@ -118,26 +127,26 @@ class Builder {
     std::sort(nodes.begin(), nodes.end());
     Key key{-1, -1, -1, -1};
     std::copy(nodes.begin(), nodes.end(), key.begin());
-    const auto [found, isNew] = known_.emplace(key, static_cast<Index>(complex_.vertices.size()));
+    const auto [found, isNew] = known_.emplace(key, static_cast<Index>(sheets_.vertices.size()));
     if (isNew) {
       const Eigen::VectorXd w = nodes.size() == 2 ? edgeWeights(nodes[0], nodes[1])
                                                   : drawInside(solveEquidistance(nodes), meanOfEdges(nodes));
       Vec3 point = Vec3::Zero();
       for (std::size_t i = 0; i < nodes.size(); ++i)
         point += w[static_cast<Eigen::Index>(i)] * tets_.nodes[at(nodes[i])];
-      complex_.vertices.push_back(point);
+      sheets_.vertices.push_back(point);
     }
     return found->second;
   }
 
   void addTriangle(Index a, Index b, Index c, Index back, Index front, Index tet) {
-    complex_.triangles.push_back({{a, b, c}, front, back, tet});
+    triangles_.push_back({{a, b, c}, front, back, tet});
   }
 
   /// A quad of a sheet, split along its shorter diagonal.
   void addQuad(const std::array<Index, 4>& q, Index back, Index front, Index tet) {
     auto length = [&](Index a, Index b) {
-      return (complex_.vertices[at(a)] - complex_.vertices[at(b)]).squaredNorm();
+      return (sheets_.vertices[at(a)] - sheets_.vertices[at(b)]).squaredNorm();
     };
     const std::size_t s = length(q[0], q[2]) <= length(q[1], q[3]) ? 0 : 1;
     addTriangle(q[s], q[s + 1], q[s + 2], back, front, tet);
@@ -170,7 +179,7 @@ class Builder {
     std::sort(labels.begin(), labels.end());
     const auto distinct = std::unique(labels.begin(), labels.end()) - labels.begin();
     if (distinct == 1) return;
-    ++complex_.cutTets;
+    ++sheets_.cutTets;
     const Tetra s = sortedByLabel(corners);
     if (distinct == 4) return addFourLabels(s, t);
     if (distinct == 3) return addThreeLabels(s, t);
@@ -193,16 +202,16 @@ class Builder {
     const Index f0 = vertexOf({s[0], s[2], s[3]}), f1 = vertexOf({s[1], s[2], s[3]});
     const Index bc = vertexOf({s[2], s[3]}), a0b = vertexOf({s[0], s[2]}), a1b = vertexOf({s[1], s[2]}),
                 a0c = vertexOf({s[0], s[3]}), a1c = vertexOf({s[1], s[3]});
-    const std::size_t first = complex_.triangles.size();
+    const std::size_t first = triangles_.size();
     addTriangle(bc, f0, f1, b, c, t);
     addQuad({a0b, f0, f1, a1b}, a, b, t);
     addQuad({a1c, f1, f0, a0c}, a, c, t);
     if (!crossThemselves(first)) return;
-    complex_.triangles.resize(first);
-    const Index centre = static_cast<Index>(complex_.vertices.size());
+    triangles_.resize(first);
+    const Index centre = static_cast<Index>(sheets_.vertices.size());
     Vec3 mean = Vec3::Zero();
-    for (const Index v : {f0, f1, bc, a0b, a1b, a0c, a1c}) mean += complex_.vertices[at(v)] / 7;
-    complex_.vertices.push_back(mean);
+    for (const Index v : {f0, f1, bc, a0b, a1b, a0c, a1c}) mean += sheets_.vertices[at(v)] / 7;
+    sheets_.vertices.push_back(mean);
     const std::array<std::array<Index, 4>, 8> fan{{{bc, f0, b, c},
                                                    {f1, bc, b, c},
                                                    {a0b, f0, a, b},
@@ -230,10 +239,10 @@ class Builder {
 
   /// Does an edge of one of the triangles from `first` on pass through another of them?
   bool crossThemselves(std::size_t first) const {
-    const ExactPoints points(complex_.vertices);
-    for (std::size_t i = first; i < complex_.triangles.size(); ++i)
-      for (std::size_t j = first; j < complex_.triangles.size(); ++j) {
-        const Triangle &s = complex_.triangles[i].corners, &t = complex_.triangles[j].corners;
+    const ExactPoints points(sheets_.vertices);
+    for (std::size_t i = first; i < triangles_.size(); ++i)
+      for (std::size_t j = first; j < triangles_.size(); ++j) {
+        const Triangle &s = triangles_[i].corners, &t = triangles_[j].corners;
         for (std::size_t e = 0; e < 3; ++e) {
           const Index p = s[e], q = s[(e + 1) % 3];
           const bool shares =
@@ -245,14 +254,13 @@ class Builder {
   }
 
   void markCage() {
-    complex_.onCage.assign(complex_.vertices.size(), false);
+    sheets_.onCage.assign(sheets_.vertices.size(), 0);
     auto mark = [&](Key key) {
       std::sort(key.begin(), key.end());
       // Padding sorts to the front; keys hold it at the back.
       std::rotate(key.begin(), std::find_if(key.begin(), key.end(), [](Index i) { return i >= 0; }),
                   key.end());
-      if (const auto found = known_.find(key); found != known_.end())
-        complex_.onCage[at(found->second)] = true;
+      if (const auto found = known_.find(key); found != known_.end()) sheets_.onCage[at(found->second)] = 1;
     };
     for (const Triangle& f : tets_.boundary) {
       mark({f[0], f[1], f[2], -1});
@@ -265,12 +273,13 @@ class Builder {
   const Partition& partition_;
   const TetMesh& tets_;
   Eigen::VectorXd body_;
-  CrackComplex complex_;
+  Sheets sheets_;
+  std::vector<CrackTriangle> triangles_;
   std::unordered_map<Key, Index, KeyHash> known_;
 };
 
 }  // namespace
 
-CrackComplex canonicalCrackComplex(const Partition& partition) { return Builder(partition).build(); }
+Sheets canonicalSheets(const Partition& partition) { return Builder(partition).build(); }
 
 }  // namespace sherd

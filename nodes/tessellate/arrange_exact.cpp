@@ -1,0 +1,338 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "tessellate/arrangement.h"
+#include "tessellate/crossing_order.h"
+#include "tessellate/triangle_in_tet.h"
+
+namespace sherd {
+namespace {
+
+constexpr std::size_t kBlock = 16;  ///< cut tetrahedra a task
+
+/// An end of a segment as found, named by what crosses what.
+struct FoundEnd {
+  Index a, b;     ///< of the surface edge, ascending; or the sheet edge and −1
+  Index through;  ///< the polygon; or the surface triangle
+  Index segment;  ///< 2 · segment + (0: from, 1: to)
+  bool fromFront;
+  Vec3 position;
+
+  bool names(const FoundEnd& o) const { return a == o.a && b == o.b && through == o.through; }
+  friend bool operator<(const FoundEnd& x, const FoundEnd& y) {
+    return std::tie(x.a, x.b, x.through, x.segment) < std::tie(y.a, y.b, y.through, y.segment);
+  }
+};
+
+struct FoundSegments {
+  std::vector<Segment> segments;
+  std::vector<FoundEnd> surfaceEnds, sheetEnds;  ///< segment counts from the block's first
+};
+
+class Arranger {
+ public:
+  Arranger(const TetMesh& tets, const ExactSheets& exact, const SiteValues& values, const Exec& exec)
+      : tets_(tets),
+        exact_(exact),
+        sheets_(exact.sheets),
+        values_(values),
+        exec_(exec),
+        positions_(tets.surface->positions),
+        triangles_(tets.surface->triangles) {}
+
+  Result<Arrangement> run() {
+    groupByTet();
+    findSegments();
+    if (exec_.cancelled()) return cancelledError();
+    number();
+    nameSurfaceEdges();
+    if (exec_.cancelled()) return cancelledError();
+    if (!orderAlongEdges(
+            a_.surfaceCrossings,
+            [&](const Crossing& x, const Crossing& y) { return isBeforeOnSurface(x, y); },
+            [&](const Crossing& x) { return cellsAcross(sheets_, x); }))
+      return inconsistentCut("cells do not follow each other along an edge of the surface");
+    if (!orderAlongEdges(
+            a_.sheetCrossings, [&](const Crossing& x, const Crossing& y) { return isBeforeOnSheet(x, y); },
+            sidesAcross))
+      return inconsistentCut("inside and outside do not alternate along an edge of a sheet");
+    SHERD_CHECK(checkLabels());
+    SHERD_CHECK(classifySheets(tets_, sheets_, a_));
+    groupBySurface(a_);
+    groupByPolygon(sheets_.polygons.size(), a_);
+    return std::move(a_);
+  }
+
+ private:
+  void groupByTet() {
+    for (std::size_t p = 0; p < sheets_.polygons.size(); ++p)
+      if (p == 0 || sheets_.polygons[p].tet != sheets_.polygons[p - 1].tet)
+        tetBegin_.push_back(static_cast<Index>(p));
+    cutTets_ = tetBegin_.size();
+    tetBegin_.push_back(static_cast<Index>(sheets_.polygons.size()));
+    cutTet_.assign(tets_.tets.size(), -1);
+    cornerOfEdge_.resize(sheets_.edges.size());
+    for (std::size_t c = 0; c < sheets_.edgeOf.size(); ++c)
+      cornerOfEdge_[at(sheets_.edgeOf[c])] = static_cast<Index>(c);
+    for (std::size_t i = 0; i < cutTets_; ++i)
+      cutTet_[at(sheets_.polygons[at(tetBegin_[i])].tet)] = static_cast<Index>(i);
+  }
+
+  void findSegments() {
+    found_.resize((cutTets_ + kBlock - 1) / kBlock);
+    parallelFor(exec_, cutTets_, kBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) searchTet(i, found_[begin / kBlock]);
+    });
+  }
+
+  void searchTet(std::size_t cut, FoundSegments& out) const {
+    const Index first = tetBegin_[cut], last = tetBegin_[cut + 1], tet = sheets_.polygons[at(first)].tet;
+    const Index heldBegin = tets_.heldBegin[at(tet)], heldEnd = tets_.heldBegin[at(tet) + 1];
+    if (heldBegin == heldEnd) return;
+    const TetFrame frame(tets_, values_, tet);
+    for (Index h = heldBegin; h < heldEnd; ++h) {
+      const Index s = tets_.held[at(h)];
+      TriangleInTet triangle(frame, triangles_[at(s)], positions_);
+      for (Index p = first; p < last; ++p) addSegment(triangle, s, p, out);
+    }
+  }
+
+  std::span<const SheetEdgeLine> linesOf(Index polygon) const {
+    const SheetPolygon& p = sheets_.polygons[at(polygon)];
+    return std::span(exact_.lines).subspan(at(p.first), at(p.count));
+  }
+
+  void addSegment(TriangleInTet& triangle, Index s, Index p, FoundSegments& out) const {
+    const auto [back, front] = exact_.ranks[at(p)];
+    SegmentEnd ends[2];
+    if (!triangle.meets(back, front, linesOf(p), ends[0], ends[1])) return;
+    for (const bool isTo : {false, true}) {
+      const SegmentEnd& end = ends[isTo];
+      const std::array<double, 3> w = triangle.weights(end);
+      FoundEnd found;
+      found.segment = 2 * static_cast<Index>(out.segments.size()) + isTo;
+      found.position = placed(triangles_[at(s)], w);
+      if (end.side >= 0) {
+        const auto c = static_cast<std::size_t>(end.side), d = (c + 1) % 3;
+        const Index from = triangles_[at(s)][c], to = triangles_[at(s)][d];
+        found.a = std::min(from, to), found.b = std::max(from, to), found.through = p;
+        found.fromFront = triangle.signAtCorner(from < to ? c : d) < 0;
+        out.surfaceEnds.push_back(found);
+      } else {
+        // Along the polygon's border the surface's inside begins at the segment's start, and ends at its end.
+        found.a = sheets_.edgesOf(sheets_.polygons[at(p)])[at(end.slot)], found.b = -1, found.through = s;
+        found.fromFront = sheets_.forward(sheets_.polygons[at(p)], end.slot) != isTo;
+        out.sheetEnds.push_back(found);
+      }
+    }
+    out.segments.push_back({s, p, -1, -1});
+  }
+
+  /// From the heaviest corner, so that a point close to a corner keeps that corner's digits; within the
+  /// corners' box, so that a coordinate that they share stays.
+  Vec3 placed(const Triangle& corners, const std::array<double, 3>& w) const {
+    const auto base = static_cast<std::size_t>(std::max_element(w.begin(), w.end()) - w.begin());
+    const Vec3& origin = positions_[at(corners[base])];
+    Vec3 offset = Vec3::Zero();
+    Box box;
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (w[c] != 0) box.add(positions_[at(corners[c])]);
+      if (c != base) offset += w[c] * (positions_[at(corners[c])] - origin);
+    }
+    return Vec3(origin + offset).cwiseMax(box.low).cwiseMin(box.high);
+  }
+
+  /// Gathers the blocks, gives each crossing one vertex, and ties the segments' ends to them.
+  void number() {
+    std::vector<FoundEnd> surfaceEnds, sheetEnds;
+    std::vector<Segment>& segments = a_.segments;
+    for (FoundSegments& block : found_) {
+      const Index first = 2 * static_cast<Index>(segments.size());
+      for (auto [from, to] :
+           {std::pair(&block.surfaceEnds, &surfaceEnds), std::pair(&block.sheetEnds, &sheetEnds)})
+        for (FoundEnd& end : *from) {
+          end.segment += first;
+          to->push_back(end);
+        }
+      segments.insert(segments.end(), block.segments.begin(), block.segments.end());
+    }
+    a_.surface = triangles_;
+    a_.firstCrack = static_cast<Index>(positions_.size());
+    a_.firstNew = a_.firstCrack + static_cast<Index>(sheets_.vertices.size());
+    a_.positions.reserve(at(a_.firstNew) + (surfaceEnds.size() + sheetEnds.size()) / 2 + 1);
+    a_.positions.assign(positions_.begin(), positions_.end());
+    a_.positions.insert(a_.positions.end(), sheets_.vertices.begin(), sheets_.vertices.end());
+    takeEnds(surfaceEnds, a_.surfaceCrossings);
+    takeEnds(sheetEnds, a_.sheetCrossings);
+    indexByEdge(a_.surfaceCrossings, a_.cutEdges.size());
+    indexByEdge(a_.sheetCrossings, sheets_.edges.size());
+    std::sort(segments.begin(), segments.end(), [](const Segment& x, const Segment& y) {
+      return std::tie(x.surface, x.polygon) < std::tie(y.surface, y.polygon);
+    });
+  }
+
+  void takeEnds(std::vector<FoundEnd>& ends, EdgeCrossings& out) {
+    std::sort(ends.begin(), ends.end());
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      const FoundEnd& end = ends[i];
+      if (i == 0 || !end.names(ends[i - 1])) {
+        if (end.b >= 0 && (i == 0 || ends[i - 1].a != end.a || ends[i - 1].b != end.b))
+          a_.cutEdges.push_back({end.a, end.b});
+        const Index edge = end.b >= 0 ? static_cast<Index>(a_.cutEdges.size()) - 1 : end.a;
+        out.list.push_back({edge, end.through, end.fromFront, static_cast<Index>(a_.positions.size())});
+        a_.positions.push_back(end.position);
+      }
+      Segment& segment = a_.segments[at(end.segment / 2)];
+      (end.segment % 2 == 0 ? segment.from : segment.to) = out.list.back().vertex;
+    }
+  }
+
+  /// Which triangles are cut, and by which of their sides.
+  void nameSurfaceEdges() {
+    for (const Segment& s : a_.segments)
+      if (a_.cutTriangles.empty() || a_.cutTriangles.back() != s.surface)
+        a_.cutTriangles.push_back(s.surface);
+    a_.edgesOfCut.resize(a_.cutTriangles.size());
+    for (std::size_t i = 0; i < a_.cutTriangles.size(); ++i)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Triangle& t = triangles_[at(a_.cutTriangles[i])];
+        const std::array<Index, 2> ends{std::min(t[c], t[(c + 1) % 3]), std::max(t[c], t[(c + 1) % 3])};
+        const auto found = std::lower_bound(a_.cutEdges.begin(), a_.cutEdges.end(), ends);
+        a_.edgesOfCut[i][c] = found != a_.cutEdges.end() && *found == ends
+                                  ? static_cast<Index>(found - a_.cutEdges.begin())
+                                  : -1;
+      }
+  }
+
+  std::array<Vec3, 4> cornersOf(Index tet) const {
+    std::array<Vec3, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = tets_.nodes[at(tets_.tets[at(tet)][i])];
+    return corners;
+  }
+
+  bool isBeforeOnSurface(const Crossing& x, const Crossing& y) const {
+    const auto [p, q] = a_.cutEdges[at(x.edge)];
+    const Vec3 &from = positions_[at(p)], &to = positions_[at(q)];
+    const Vec3 direction = to - from;
+    const double along = (a_.positions[at(y.vertex)] - a_.positions[at(x.vertex)]).dot(direction);
+    if (std::abs(along) > 1e-11 * direction.squaredNorm() + slack(from, to, direction)) return along > 0;
+    const std::array<SurfaceVertex, 2> ends{{{p, from}, {q, to}}};
+    const auto frame = [&](const Crossing& c) {
+      return TetFrame(tets_, values_, sheets_.polygons[at(c.through)].tet);
+    };
+    const TetFrame f = frame(x), g = frame(y);
+    const auto [backX, frontX] = exact_.ranks[at(x.through)];
+    const auto [backY, frontY] = exact_.ranks[at(y.through)];
+    return compareAlongEdge(ends, f.corners, f.differenceFunction(frontX, backX), g.corners,
+                            g.differenceFunction(frontY, backY)) < 0;
+  }
+
+  /// What rounding of the coordinates may add to a projection on `direction`.
+  static double slack(const Vec3& a, const Vec3& b, const Vec3& direction) {
+    return 0x1p-48 * std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff()) * direction.norm();
+  }
+
+  bool isBeforeOnSheet(const Crossing& x, const Crossing& y) const {
+    const auto [v, w] = sheets_.edges[at(x.edge)];
+    const Vec3 &from = sheets_.vertices[at(v)], &to = sheets_.vertices[at(w)];
+    const Vec3 direction = to - from;
+    Box box;
+    for (const Crossing* c : {&x, &y})
+      for (const Index corner : triangles_[at(c->through)]) box.add(positions_[at(corner)]);
+    const double along = (a_.positions[at(y.vertex)] - a_.positions[at(x.vertex)]).dot(direction);
+    const double size = 1e-11 * (box.diagonal() + direction.norm());
+    if (direction.norm() > size && std::abs(along) > size * direction.norm() + slack(from, to, direction))
+      return along > 0;
+    return compareOnSheet(x, y) < 0;
+  }
+
+  int compareOnSheet(const Crossing& x, const Crossing& y) const {
+    const auto [polygon, slot] = polygonAt(x.edge);
+    const SheetPolygon& p = sheets_.polygons[at(polygon)];
+    const TetFrame frame(tets_, values_, p.tet);
+    const auto [back, front] = exact_.ranks[at(polygon)];
+    const SheetEdgeLine& line = linesOf(polygon)[at(slot)];
+    const AffineFunction border =
+        line.face >= 0 ? TetFrame::cornerFunction(line.face) : frame.differenceFunction(line.third, back);
+    std::array<std::array<SurfaceVertex, 3>, 2> triangles;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Index i = triangles_[at(x.through)][c], j = triangles_[at(y.through)][c];
+      triangles[0][c] = {i, positions_[at(i)]};
+      triangles[1][c] = {j, positions_[at(j)]};
+    }
+    // Seen from the front the border turns counter-clockwise: along ∇(g_front − g_back) × ∇border.
+    const int order = compareAlongLine(frame.corners, border, frame.differenceFunction(front, back),
+                                       triangles[0], triangles[1]);
+    return sheets_.forward(p, slot) ? order : -order;
+  }
+
+  /// A polygon with this edge, and the edge's place in it.
+  std::array<Index, 2> polygonAt(Index edge) const {
+    const Index corner = cornerOfEdge_[at(edge)];
+    const auto after = std::upper_bound(sheets_.polygons.begin(), sheets_.polygons.end(), corner,
+                                        [](Index c, const SheetPolygon& p) { return c < p.first; });
+    const Index polygon = static_cast<Index>(after - sheets_.polygons.begin()) - 1;
+    return {polygon, corner - sheets_.polygons[at(polygon)].first};
+  }
+
+  /// The cell of every surface vertex: the only one of its tetrahedron, or the least of those that share
+  /// that.
+  Result<void> checkLabels() {
+    const std::size_t n = positions_.size();
+    a_.surfaceLabel.assign(n, -1);
+    parallelFor(exec_, n, 1024, [&](std::size_t begin, std::size_t end) {
+      std::vector<Index> ranks;
+      for (std::size_t v = begin; v < end; ++v)
+        if (tets_.vertexTet[v] >= 0) a_.surfaceLabel[v] = labelOf(v, ranks);
+    });
+    if (exec_.cancelled()) return cancelledError();
+    if (std::find(a_.surfaceLabel.begin(), a_.surfaceLabel.end(), -1) != a_.surfaceLabel.end())
+      return inconsistentCut("a vertex of the surface lies in no tetrahedron");
+    for (std::size_t e = 0; e < a_.cutEdges.size(); ++e) {
+      const auto on = a_.surfaceCrossings.on(static_cast<Index>(e));
+      if (cellsAcross(sheets_, on.front())[0] != a_.surfaceLabel[at(a_.cutEdges[e][0])] ||
+          cellsAcross(sheets_, on.back())[1] != a_.surfaceLabel[at(a_.cutEdges[e][1])])
+        return inconsistentCut("a part of the surface lies in two cells");
+    }
+    return {};
+  }
+
+  Index labelOf(std::size_t vertex, std::vector<Index>& ranks) const {
+    const Index tet = tets_.vertexTet[vertex], cut = cutTet_[at(tet)];
+    if (cut < 0) return values_.site(values_.least(tets_.tets[at(tet)][0]));
+    ranks.clear();
+    for (Index p = tetBegin_[at(cut)]; p < tetBegin_[at(cut) + 1]; ++p)
+      ranks.insert(ranks.end(), exact_.ranks[at(p)].begin(), exact_.ranks[at(p)].end());
+    const TetFrame frame(tets_, values_, tet);
+    const SurfaceVertex own{static_cast<Index>(vertex), positions_[vertex]};
+    const auto coordinates = frame.coordinates(own.point);
+    Index best = ranks.front();
+    for (const Index r : ranks)
+      if (r != best && frame.sign(own, coordinates, r, best) < 0) best = r;
+    return values_.site(best);
+  }
+
+  const TetMesh& tets_;
+  const ExactSheets& exact_;
+  const Sheets& sheets_;
+  const SiteValues& values_;
+  const Exec& exec_;
+  std::span<const Vec3> positions_;
+  std::span<const Triangle> triangles_;
+  std::vector<Index> tetBegin_;      ///< per cut tetrahedron its first polygon; one more at the end
+  std::vector<Index> cutTet_;        ///< per tetrahedron its number among the cut ones, or −1
+  std::vector<Index> cornerOfEdge_;  ///< per sheet edge a polygon's corner where it begins
+  std::size_t cutTets_ = 0;
+  std::vector<FoundSegments> found_;
+  Arrangement a_;
+};
+
+}  // namespace
+
+Result<Arrangement> arrangeExact(const TetMesh& tets, const ExactSheets& exact, const SiteValues& values,
+                                 const Exec& exec) {
+  return Arranger(tets, exact, values, exec).run();
+}
+
+}  // namespace sherd

@@ -1,0 +1,135 @@
+#include "tessellate/coincident.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <span>
+#include <tuple>
+
+namespace sherd {
+namespace {
+
+/// A triangle as what lies above and below it, seen so that its ascending corners turn counter-clockwise from
+/// above.
+struct Layer {
+  Triangle corners;  ///< ascending
+  Index above, below;
+  Index source;  ///< the surface triangle, −1 for a sheet's
+
+  bool isSkin() const { return above == kOutsideCell || below == kOutsideCell; }
+  friend bool operator<(const Layer& a, const Layer& b) {
+    return std::tie(a.corners, a.source, a.above, a.below) < std::tie(b.corners, b.source, b.above, b.below);
+  }
+};
+
+/// `front`: what lies where the corners turn counter-clockwise.
+Layer layerOf(Triangle t, Index front, Index back, Index source) {
+  const int inversions = (t[0] > t[1]) + (t[1] > t[2]) + (t[0] > t[2]);
+  if (inversions % 2 == 1) std::swap(front, back);
+  std::sort(t.begin(), t.end());
+  return {t, front, back, source};
+}
+
+bool loseCorner(Triangle& t, std::span<const Index> same) {
+  for (Index& v : t) v = same[at(v)];
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+/// The one layer that a stack amounts to; empty where it amounts to nothing. False where it is more than one.
+bool combine(std::span<const Layer> stack, std::optional<Layer>& out) {
+  std::map<Index, int> surplus;  // how often a cell lies below, less how often above
+  for (const Layer& l : stack) ++surplus[l.below], --surplus[l.above];
+  std::optional<Index> below, above;
+  for (const auto& [cell, count] : surplus) {
+    if (count == 0) continue;
+    std::optional<Index>& end = count > 0 ? below : above;
+    if (end || std::abs(count) > 1) return false;
+    end = cell;
+  }
+  if (!below) return true;
+  out = Layer{stack[0].corners, *above, *below, -1};
+  if (out->isSkin())
+    for (const Layer& l : stack)
+      if (l.source >= 0) out->source = l.source;
+  return true;
+}
+
+class LayerRemover {
+ public:
+  LayerRemover(const Arrangement& a, ClippedMeshes& meshes, std::vector<unsigned char>& isCut)
+      : a_(a), meshes_(meshes), isCut_(isCut), tookIn_(a.positions.size(), 0) {}
+
+  void run() {
+    bool any = false;
+    for (std::size_t v = 0; v < tookIn_.size(); ++v)
+      if (meshes_.same[v] != static_cast<Index>(v)) any = true, tookIn_[at(meshes_.same[v])] = 1;
+    if (!any) return;
+    std::erase_if(meshes_.skin, [&](SkinTriangle& t) { return loseCorner(t.corners, meshes_.same); });
+    std::erase_if(meshes_.sheet, [&](SheetTriangle& t) { return loseCorner(t.corners, meshes_.same); });
+    gather();
+    std::sort(layers_.begin(), layers_.end());
+    std::map<Triangle, std::optional<Layer>> replaced;
+    for (std::size_t first = 0; first < layers_.size();) {
+      std::size_t last = first + 1;
+      while (last < layers_.size() && layers_[last].corners == layers_[first].corners) ++last;
+      std::optional<Layer> result;
+      if (last - first > 1 && combine(std::span(layers_).subspan(first, last - first), result))
+        replaced[layers_[first].corners] = result;
+      first = last;
+    }
+    if (!replaced.empty()) replace(replaced);
+  }
+
+ private:
+  bool mayCoincide(const Triangle& t) const {
+    return tookIn_[at(t[0])] || tookIn_[at(t[1])] || tookIn_[at(t[2])];
+  }
+
+  void gather() {
+    for (const SkinTriangle& t : meshes_.skin)
+      if (mayCoincide(t.corners)) layers_.push_back(layerOf(t.corners, kOutsideCell, t.cell, t.source));
+    for (const SheetTriangle& t : meshes_.sheet)
+      if (mayCoincide(t.corners)) layers_.push_back(layerOf(t.corners, t.front, t.back, -1));
+    for (std::size_t s = 0; s < a_.surface.size(); ++s)
+      if (!isCut_[s] && mayCoincide(a_.surface[s]))
+        layers_.push_back(layerOf(a_.surface[s], kOutsideCell, a_.surfaceLabel[at(a_.surface[s][0])],
+                                  static_cast<Index>(s)));
+  }
+
+  void replace(const std::map<Triangle, std::optional<Layer>>& replaced) {
+    const auto goes = [&](Triangle t) {
+      if (!mayCoincide(t)) return false;
+      std::sort(t.begin(), t.end());
+      return replaced.contains(t);
+    };
+    std::erase_if(meshes_.skin, [&](const SkinTriangle& t) { return goes(t.corners); });
+    std::erase_if(meshes_.sheet, [&](const SheetTriangle& t) { return goes(t.corners); });
+    for (std::size_t s = 0; s < a_.surface.size(); ++s)
+      if (!isCut_[s] && goes(a_.surface[s])) isCut_[s] = 1;
+    for (const auto& [corners, layer] : replaced) {
+      if (!layer) continue;
+      const Triangle turned{corners[0], corners[2], corners[1]};
+      if (!layer->isSkin())
+        meshes_.sheet.push_back({corners, layer->above, layer->below});
+      else if (layer->above == kOutsideCell)
+        meshes_.skin.push_back({corners, layer->source, layer->below});
+      else
+        meshes_.skin.push_back({turned, layer->source, layer->above});
+    }
+  }
+
+  const Arrangement& a_;
+  ClippedMeshes& meshes_;
+  std::vector<unsigned char>& isCut_;
+  std::vector<unsigned char> tookIn_;  ///< per vertex: others were put on it
+  std::vector<Layer> layers_;
+};
+
+}  // namespace
+
+void removeThinLayers(const Arrangement& arrangement, ClippedMeshes& meshes,
+                      std::vector<unsigned char>& isCut) {
+  LayerRemover(arrangement, meshes, isCut).run();
+}
+
+}  // namespace sherd

@@ -1,0 +1,335 @@
+#include "tessellate/envelope.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "base/parallel.h"
+#include "geometry/approx.h"
+#include "tessellate/symbolic_sign.h"
+
+namespace sherd {
+namespace {
+
+constexpr std::size_t kBlock = 32;  ///< tetrahedra a task
+constexpr double kWellConditioned =
+    1e-13;  ///< relative error of a position up to which doubles are good enough
+
+/// Names a vertex: nodes and ranks, each ascending and padded with −1.
+struct VertexName {
+  Tetra nodes{-1, -1, -1, -1}, ranks{-1, -1, -1, -1};
+  friend bool operator==(const VertexName&, const VertexName&) = default;
+  std::size_t dimension() const { return nodes[2] < 0 ? 1 : nodes[3] < 0 ? 2 : 3; }
+};
+
+struct VertexNameHash {
+  std::size_t operator()(const VertexName& n) const {
+    std::uint64_t h = 0;
+    for (const Tetra* part : {&n.nodes, &n.ranks})
+      for (const Index i : *part)
+        h = (h ^ static_cast<std::uint32_t>(i)) * 0x9E3779B97F4A7C15ULL, h ^= h >> 32;
+    return static_cast<std::size_t>(h);
+  }
+};
+
+/// What the polygons of a block of tetrahedra are made of.
+struct BlockPolygons {
+  struct Polygon {
+    Index tet, back, front, count;  ///< ranks
+  };
+  std::vector<Polygon> polygons;
+  std::vector<VertexName> corners;
+  std::vector<SheetEdgeLine> lines;
+  std::vector<unsigned char> onCage;
+  std::size_t cutTets = 0;
+};
+
+void sortFirst(Tetra& list, std::size_t n) {
+  for (std::size_t i = 1; i < n; ++i)
+    for (std::size_t k = i; k > 0 && list[k - 1] > list[k]; --k) std::swap(list[k - 1], list[k]);
+}
+
+Approx determinant(const std::array<std::array<Approx, 4>, 4>& m, std::size_t n) {
+  if (n == 1) return m[0][0];
+  if (n == 2) return m[0][0] * m[1][1] - m[0][1] * m[1][0];
+  const auto minor3 = [&](std::size_t row, std::size_t a, std::size_t b, std::size_t c) {
+    return m[row][a] * (m[row + 1][b] * m[row + 2][c] - m[row + 1][c] * m[row + 2][b]) -
+           m[row][b] * (m[row + 1][a] * m[row + 2][c] - m[row + 1][c] * m[row + 2][a]) +
+           m[row][c] * (m[row + 1][a] * m[row + 2][b] - m[row + 1][b] * m[row + 2][a]);
+  };
+  if (n == 3) return minor3(0, 0, 1, 2);
+  return m[0][0] * minor3(1, 1, 2, 3) - m[0][1] * minor3(1, 0, 2, 3) + m[0][2] * minor3(1, 0, 1, 3) -
+         m[0][3] * minor3(1, 0, 1, 2);
+}
+
+/// g_plus − g_minus as a double that knows how far it was rounded.
+Approx difference(const double* g, Index plus, Index minus) {
+  const double d = g[plus] - g[minus];
+  return {d, 0x1p-53 * std::abs(d)};
+}
+
+/// The envelope in one tetrahedron.
+class TetEnvelope {
+ public:
+  TetEnvelope(const TetMesh& tets, const SiteValues& values, Index tet)
+      : tet_(tet), nodes_(tets.tets[at(tet)]) {
+    for (std::size_t i = 0; i < 4; ++i) g_[i] = values.at(nodes_[i]);
+    for (std::size_t i = 0; i < 4; ++i)
+      atBoundary_[i] = !tets.neighbours.empty() && tets.neighbours[at(tet)][i] < 0;
+  }
+
+  void addPolygons(std::span<const Index> candidates, BlockPolygons& out) {
+    const std::size_t before = out.polygons.size();
+    for (std::size_t a = 0; a < candidates.size(); ++a)
+      for (std::size_t b = a + 1; b < candidates.size(); ++b) {
+        back_ = candidates[a], front_ = candidates[b];
+        if (!startPolygon()) continue;
+        bool empty = false;
+        for (std::size_t l = 0; l < candidates.size() && !empty; ++l)
+          if (l != a && l != b) empty = !clipBy(candidates[l]);
+        if (!empty) emit(out);
+      }
+    out.cutTets += out.polygons.size() > before;
+  }
+
+ private:
+  /// An edge's line: 0…3 a face, from 4 on a rank + 4. Corner i of the polygon lies between lines i − 1 and
+  /// i.
+  using Line = Index;
+  static bool isFace(Line l) { return l < 4; }
+
+  /// Where g_plus − g_minus is at a corner of the tetrahedron, with ties.
+  int signAtNode(Index plus, Index minus, std::size_t node) const {
+    const double a = g_[node][plus], b = g_[node][minus];
+    if (a != b) return a > b ? 1 : -1;
+    return plus < minus ? -1 : 1;
+  }
+
+  /// The plane g_back = g_front in the tetrahedron; false where it misses that.
+  bool startPolygon() {
+    std::array<int, 4> order{};
+    int low = 0, high = 3;
+    for (int i = 0; i < 4; ++i)
+      order[static_cast<std::size_t>(
+          signAtNode(front_, back_, static_cast<std::size_t>(i)) > 0 ? low++ : high--)] = i;
+    if (low == 0 || low == 4) return false;
+    // Corners in the back cell first; an odd reordering is made even within one cell.
+    int inversions = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = i + 1; j < 4; ++j) inversions += order[i] > order[j];
+    if (inversions % 2 == 1) low == 1 ? std::swap(order[2], order[3]) : std::swap(order[0], order[1]);
+    const auto [a, b, c, d] = order;
+    if (low == 1)  // corners on ab, ac, ad
+      lines_ = {d, b, c};
+    else if (low == 3)  // bd, cd, ad
+      lines_ = {a, b, c};
+    else  // ad, bd, bc, ac
+      lines_ = {c, a, d, b};
+    return true;
+  }
+
+  int determinantSign(std::span<const int> nodes, std::span<const std::array<Index, 2>> pairs) const {
+    std::array<std::array<Approx, 4>, 4> m;
+    for (std::size_t r = 0; r < nodes.size(); ++r)
+      for (std::size_t c = 0; c < pairs.size(); ++c)
+        m[r][c] = difference(g_[static_cast<std::size_t>(nodes[r])], pairs[c][0], pairs[c][1]);
+    if (const int s = determinant(m, nodes.size()).sign(); s != 0) return s;
+    std::array<AffineFunction, 4> functions;
+    for (std::size_t c = 0; c < pairs.size(); ++c) {
+      functions[c].plus = pairs[c][0];
+      functions[c].minus = pairs[c][1];
+      for (std::size_t i = 0; i < 4; ++i)
+        functions[c].plusAt[i] = g_[i] + pairs[c][0], functions[c].minusAt[i] = g_[i] + pairs[c][1];
+    }
+    return nodeDeterminantSign(nodes, std::span(functions).first(pairs.size()));
+  }
+
+  /// Sign of g_third − g_back at the corner between two lines.
+  int signAtCorner(Line one, Line other, Index third) const {
+    std::array<int, 4> nodes{};
+    std::size_t n = 0;
+    for (int i = 0; i < 4; ++i)
+      if (one != i && other != i) nodes[n++] = i;
+    std::array<std::array<Index, 2>, 4> pairs{{{front_, back_}}};
+    std::size_t functions = 1;
+    for (const Line l : {one, other})
+      if (!isFace(l)) pairs[functions++] = {l - 4, back_};
+    pairs[functions] = {third, back_};
+    // The corner's weights are the cofactors of the last column, up to a sign that they share.
+    const std::span<const int> all(nodes.data(), n);
+    const int sign =
+        determinantSign(all.subspan(1), std::span(pairs).first(functions)) * (n % 2 == 0 ? -1 : 1);
+    return sign * determinantSign(all, std::span(pairs).first(functions + 1));
+  }
+
+  /// Keeps where g_third ≥ g_back; false where nothing is left.
+  bool clipBy(Index third) {
+    const std::size_t n = lines_.size();
+    signs_.resize(n);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      signs_[i] = signAtCorner(lines_[(i + n - 1) % n], lines_[i], third);
+      kept += signs_[i] > 0;
+    }
+    if (kept == n) return true;
+    if (kept == 0) return false;
+    // The kept corners follow one another; begin with the first of them.
+    std::size_t first = 0;
+    while (!(signs_[first] > 0 && signs_[(first + n - 1) % n] < 0)) ++first;
+    clipped_.clear();
+    for (std::size_t i = 0; i < kept; ++i) clipped_.push_back(lines_[(first + i) % n]);
+    clipped_.push_back(third + 4);
+    clipped_.push_back(lines_[(first + n - 1) % n]);
+    // Corner 0 of the result has to stand between the line that leads to it and the first kept one.
+    std::rotate(clipped_.begin(), clipped_.end() - 1, clipped_.end());
+    lines_.swap(clipped_);
+    return true;
+  }
+
+  void emit(BlockPolygons& out) const {
+    const std::size_t n = lines_.size();
+    out.polygons.push_back({tet_, back_, front_, static_cast<Index>(n)});
+    for (std::size_t i = 0; i < n; ++i) {
+      const Line before = lines_[(i + n - 1) % n], after = lines_[i];
+      out.corners.push_back(nameOf(before, after));
+      out.lines.push_back({isFace(after) ? after : -1, isFace(after) ? -1 : after - 4});
+      const auto isOutside = [&](Line l) { return isFace(l) && atBoundary_[static_cast<std::size_t>(l)]; };
+      out.onCage.push_back(isOutside(before) || isOutside(after));
+    }
+  }
+
+  VertexName nameOf(Line one, Line other) const {
+    VertexName name;
+    std::size_t n = 0;
+    for (Line i = 0; i < 4; ++i)
+      if (one != i && other != i) name.nodes[n++] = nodes_[static_cast<std::size_t>(i)];
+    sortFirst(name.nodes, n);
+    n = 0;
+    name.ranks[n++] = back_;
+    name.ranks[n++] = front_;
+    for (const Line l : {one, other})
+      if (!isFace(l)) name.ranks[n++] = l - 4;
+    sortFirst(name.ranks, n);
+    return name;
+  }
+
+  Index tet_;
+  Tetra nodes_;
+  std::array<const double*, 4> g_{};
+  std::array<bool, 4> atBoundary_{};
+  Index back_ = -1, front_ = -1;
+  std::vector<Line> lines_, clipped_;
+  std::vector<int> signs_;
+};
+
+/// Weights of the nodes in the vertex, from the minors of the differences to the first site.
+std::array<double, 4> weightsOf(const VertexName& name, const SiteValues& values) {
+  const std::size_t n = name.dimension() + 1;
+  std::array<std::array<Approx, 4>, 4> full;
+  for (std::size_t r = 0; r < n; ++r)
+    for (std::size_t c = 0; c + 1 < n; ++c)
+      full[r][c] = difference(values.at(name.nodes[r]), name.ranks[c + 1], name.ranks[0]);
+  std::array<Approx, 4> minors;
+  Approx sum = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::array<std::array<Approx, 4>, 4> m;
+    for (std::size_t r = 0, out = 0; r < n; ++r)
+      if (r != i) m[out++] = full[r];
+    const Approx d = determinant(m, n - 1);
+    minors[i] = i % 2 == 0 ? d : -d;
+    sum = sum + minors[i];
+  }
+  double error = sum.error;
+  for (std::size_t i = 0; i < n; ++i) error = std::max(error, minors[i].error);
+  std::array<double, 4> weights{};
+  if (error <= kWellConditioned * std::abs(sum.value)) {
+    for (std::size_t i = 0; i < n; ++i) weights[i] = minors[i].value / sum.value;
+    return weights;
+  }
+  std::array<AffineFunction, 3> functions;
+  for (std::size_t c = 0; c + 1 < n; ++c) {
+    functions[c].plus = name.ranks[c + 1];
+    functions[c].minus = name.ranks[0];
+    for (std::size_t r = 0; r < n; ++r) {
+      functions[c].plusAt[r] = values.at(name.nodes[r]) + name.ranks[c + 1];
+      functions[c].minusAt[r] = values.at(name.nodes[r]) + name.ranks[0];
+    }
+  }
+  constexpr std::array<int, 4> rows{0, 1, 2, 3};
+  return nodeWeights(std::span(rows).first(n), std::span(functions).first(n - 1));
+}
+
+/// From the heaviest node, so that a vertex close to a node keeps that node's digits.
+Vec3 positionOf(const VertexName& name, const SiteValues& values, const TetMesh& tets) {
+  const std::array<double, 4> weights = weightsOf(name, values);
+  const std::size_t n = name.dimension() + 1;
+  const auto base = static_cast<std::size_t>(
+      std::max_element(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(n)) - weights.begin());
+  const Vec3& origin = tets.nodes[at(name.nodes[base])];
+  Vec3 offset = Vec3::Zero();
+  Box box;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3& node = tets.nodes[at(name.nodes[i])];
+    box.add(node);
+    if (i != base) offset += weights[i] * (node - origin);
+  }
+  return Vec3(origin + offset).cwiseMax(box.low).cwiseMin(box.high);
+}
+
+bool liesOutside(const TetMesh& tets, std::size_t t) {
+  return tets.heldBegin[t] == tets.heldBegin[t + 1] && tets.insideFraction.size() == tets.tets.size() &&
+         tets.insideFraction[t] < 0.5;
+}
+
+std::vector<BlockPolygons> polygonsInBlocks(const TetMesh& tets, const SiteValues& values, const Exec& exec) {
+  const std::size_t n = tets.tets.size();
+  std::vector<BlockPolygons> blocks((n + kBlock - 1) / kBlock);
+  parallelFor(exec, n, kBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<Index> candidates;
+    std::vector<unsigned char> scratch;
+    for (std::size_t t = begin; t < end; ++t) {
+      if (liesOutside(tets, t)) continue;
+      values.candidates(tets.tets[t], candidates, scratch);
+      if (candidates.size() > 1)
+        TetEnvelope(tets, values, static_cast<Index>(t)).addPolygons(candidates, blocks[begin / kBlock]);
+    }
+  });
+  return blocks;
+}
+
+}  // namespace
+
+ExactSheets exactSheets(const TetMesh& tets, const SiteValues& values, const Exec& exec) {
+  const std::vector<BlockPolygons> blocks = polygonsInBlocks(tets, values, exec);
+  ExactSheets result;
+  Sheets& sheets = result.sheets;
+  std::size_t corners = 0;
+  for (const BlockPolygons& block : blocks) corners += block.corners.size();
+  std::unordered_map<VertexName, Index, VertexNameHash> known;
+  known.reserve(corners / 3);
+  std::vector<VertexName> names;
+  for (const BlockPolygons& block : blocks) {
+    Index first = static_cast<Index>(sheets.corners.size());
+    for (const BlockPolygons::Polygon& p : block.polygons) {
+      sheets.polygons.push_back({first, p.count, values.site(p.front), values.site(p.back), p.tet});
+      result.ranks.push_back({p.back, p.front});
+      first += p.count;
+    }
+    for (std::size_t c = 0; c < block.corners.size(); ++c) {
+      const auto [found, isNew] = known.emplace(block.corners[c], static_cast<Index>(names.size()));
+      if (isNew) names.push_back(block.corners[c]), sheets.onCage.push_back(0);
+      sheets.corners.push_back(found->second);
+      sheets.onCage[at(found->second)] |= block.onCage[c];
+    }
+    result.lines.insert(result.lines.end(), block.lines.begin(), block.lines.end());
+    sheets.cutTets += block.cutTets;
+  }
+  sheets.vertices.resize(names.size());
+  parallelFor(exec, names.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) sheets.vertices[v] = positionOf(names[v], values, tets);
+  });
+  sheets.connect();
+  return result;
+}
+
+}  // namespace sherd

@@ -1,0 +1,187 @@
+#include "tessellate/triangle_in_tet.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sherd {
+namespace {
+
+constexpr double kUnit = 0x1p-53;
+constexpr double kWellConditioned = 1e-13;  ///< relative error of weights up to which doubles are good enough
+
+}  // namespace
+
+TetFrame::TetFrame(const TetMesh& tets, const SiteValues& values, Index tet) {
+  double longest = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    corners[i] = tets.nodes[at(tets.tets[at(tet)][i])];
+    g[i] = values.at(tets.tets[at(tet)][i]);
+    for (std::size_t k = 0; k < i; ++k)
+      longest = std::max(longest, (corners[i] - corners[k]).cwiseAbs().maxCoeff());
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto& face = kTetraFace[i];
+    base[i] = corners[static_cast<std::size_t>(face[0])];
+    inward[i] = (corners[static_cast<std::size_t>(face[2])] - base[i])
+                    .cross(corners[static_cast<std::size_t>(face[1])] - base[i]);
+  }
+  // Each coordinate of `inward` is at most 2 longest² and off by at most 4 units of that; the product with a
+  // rounded difference adds at most another 4.
+  error = 20 * kUnit * longest * longest;
+}
+
+std::array<Approx, 4> TetFrame::coordinates(const Vec3& point) const {
+  std::array<Approx, 4> result;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 d = point - base[i];
+    result[i] = {inward[i].dot(d), error * d.cwiseAbs().sum()};
+  }
+  return result;
+}
+
+Approx TetFrame::difference(const std::array<Approx, 4>& coordinates, Index plus, Index minus) const {
+  double value = 0, size = 0, inherited = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double d = g[i][plus] - g[i][minus];
+    value += coordinates[i].value * d;
+    size += std::abs(coordinates[i].value * d);
+    inherited += coordinates[i].error * std::abs(d);
+  }
+  return {value, 8 * kUnit * size + (1 + 8 * kUnit) * inherited + 0x1p-1060};
+}
+
+AffineFunction TetFrame::differenceFunction(Index plus, Index minus) const {
+  AffineFunction f;
+  f.plus = plus;
+  f.minus = minus;
+  for (std::size_t i = 0; i < 4; ++i) f.plusAt[i] = g[i] + plus, f.minusAt[i] = g[i] + minus;
+  return f;
+}
+
+AffineFunction TetFrame::cornerFunction(int corner) {
+  AffineFunction f;
+  f.corner = corner;
+  return f;
+}
+
+int TetFrame::sign(const SurfaceVertex& vertex, const std::array<Approx, 4>& coordinates, Index plus,
+                   Index minus) const {
+  if (const int s = difference(coordinates, plus, minus).sign(); s != 0) return s;
+  const AffineFunction f = differenceFunction(plus, minus);
+  return vertexDeterminantSign(corners, std::span(&vertex, 1), std::span(&f, 1));
+}
+
+TriangleInTet::TriangleInTet(const TetFrame& frame, const Triangle& corners, std::span<const Vec3> positions)
+    : frame_(frame) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    vertices_[c] = {corners[c], positions[at(corners[c])]};
+    coordinates_[c] = frame.coordinates(vertices_[c].point);
+  }
+}
+
+Approx TriangleInTet::value(int function, std::size_t corner) const {
+  if (function == kSheet) return sheet_[corner];
+  const SheetEdgeLine& line = lines_[static_cast<std::size_t>(function)];
+  if (line.face >= 0) return coordinates_[corner][static_cast<std::size_t>(line.face)];
+  return frame_.difference(coordinates_[corner], line.third, back_);
+}
+
+AffineFunction TriangleInTet::affine(int function) const {
+  if (function == kSheet) return frame_.differenceFunction(front_, back_);
+  const SheetEdgeLine& line = lines_[static_cast<std::size_t>(function)];
+  return line.face >= 0 ? TetFrame::cornerFunction(line.face) : frame_.differenceFunction(line.third, back_);
+}
+
+int TriangleInTet::determinantSign(std::span<const std::size_t> corners,
+                                   std::span<const int> functions) const {
+  std::array<std::array<Approx, 3>, 3> m;
+  for (std::size_t r = 0; r < corners.size(); ++r)
+    for (std::size_t c = 0; c < functions.size(); ++c) m[r][c] = value(functions[c], corners[r]);
+  const auto minor = [&](std::size_t row, std::size_t a, std::size_t b) {
+    return m[row][a] * m[row + 1][b] - m[row][b] * m[row + 1][a];
+  };
+  const Approx d = corners.size() == 2
+                       ? minor(0, 0, 1)
+                       : m[0][0] * minor(1, 1, 2) - m[0][1] * minor(1, 0, 2) + m[0][2] * minor(1, 0, 1);
+  if (const int s = d.sign(); s != 0) return s;
+  std::array<SurfaceVertex, 3> points;
+  std::array<AffineFunction, 3> exact;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    points[i] = vertices_[corners[i]];
+    exact[i] = affine(functions[i]);
+  }
+  return vertexDeterminantSign(frame_.corners, std::span(points).first(corners.size()),
+                               std::span(exact).first(corners.size()));
+}
+
+int TriangleInTet::signAtEnd(const SegmentEnd& end, int function) const {
+  // The end's weights are the cofactors of the last column, up to a sign that they share.
+  if (end.side >= 0) {
+    const auto p = static_cast<std::size_t>(end.side), q = (p + 1) % 3;
+    return -signs_[q] * determinantSign(std::array{p, q}, std::array{kSheet, function});
+  }
+  const int own = static_cast<int>(end.slot);
+  const int sign = determinantSign(std::array<std::size_t, 2>{1, 2}, std::array{kSheet, own});
+  return sign * determinantSign(std::array<std::size_t, 3>{0, 1, 2}, std::array{kSheet, own, function});
+}
+
+bool TriangleInTet::meets(Index back, Index front, std::span<const SheetEdgeLine> lines, SegmentEnd& from,
+                          SegmentEnd& to) {
+  back_ = back, front_ = front, lines_ = lines;
+  int sum = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    sheet_[c] = frame_.difference(coordinates_[c], front, back);
+    signs_[c] = sheet_[c].sign();
+    if (signs_[c] == 0) signs_[c] = frame_.sign(vertices_[c], coordinates_[c], front, back);
+    sum += signs_[c];
+  }
+  if (sum == 3 || sum == -3) return false;
+  // The corner that is alone on its side, with the chord that has the back cell (positive) on its left.
+  int alone = 0;
+  while (signs_[static_cast<std::size_t>(alone)] == (sum > 0 ? 1 : -1)) ++alone;
+  from = {alone, -1}, to = {(alone + 2) % 3, -1};
+  if (signs_[static_cast<std::size_t>(alone)] < 0) std::swap(from, to);
+  for (std::size_t slot = 0; slot < lines.size(); ++slot) {
+    const int function = static_cast<int>(slot);
+    const int atFrom = signAtEnd(from, function), atTo = signAtEnd(to, function);
+    if (atFrom < 0 && atTo < 0) return false;
+    if (atFrom < 0) from = {-1, static_cast<Index>(slot)};
+    if (atTo < 0) to = {-1, static_cast<Index>(slot)};
+  }
+  return true;
+}
+
+std::array<double, 3> TriangleInTet::weights(const SegmentEnd& end) const {
+  std::array<double, 3> result{};
+  const bool onSide = end.side >= 0;
+  std::array<std::size_t, 3> corners{0, 1, 2};
+  if (onSide) corners[0] = static_cast<std::size_t>(end.side), corners[1] = (corners[0] + 1) % 3;
+  std::array<Approx, 3> minors;
+  if (onSide) {
+    minors = {sheet_[corners[1]], -sheet_[corners[0]], 0.0};
+  } else {
+    const int own = static_cast<int>(end.slot);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+      minors[i] = sheet_[j] * value(own, k) - sheet_[k] * value(own, j);
+    }
+  }
+  const Approx sum = minors[0] + minors[1] + minors[2];
+  const double error = std::max({sum.error, minors[0].error, minors[1].error, minors[2].error});
+  if (error <= kWellConditioned * std::abs(sum.value)) {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (!onSide || i < 2) result[corners[i]] = minors[i].value / sum.value;
+    return result;
+  }
+  const std::size_t n = onSide ? 2 : 3;
+  std::array<SurfaceVertex, 3> points;
+  for (std::size_t i = 0; i < n; ++i) points[i] = vertices_[corners[i]];
+  std::array<AffineFunction, 2> functions{affine(kSheet)};
+  if (!onSide) functions[1] = affine(static_cast<int>(end.slot));
+  const auto exact =
+      vertexWeights(frame_.corners, std::span(points).first(n), std::span(functions).first(n - 1));
+  for (std::size_t i = 0; i < n; ++i) result[corners[i]] = exact[i];
+  return result;
+}
+
+}  // namespace sherd
