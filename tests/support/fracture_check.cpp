@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -123,7 +124,9 @@ struct CrackFace {
   Triangle sorted;
   bool odd;  ///< its direction against the sorted one
   Index piece, neighbour;
-  friend bool operator<(const CrackFace& a, const CrackFace& b) { return a.sorted < b.sorted; }
+  /// Faces of one pair of pieces stand together: rounding may lay the faces of others on top of them.
+  auto key() const { return std::tuple(sorted, std::min(piece, neighbour), std::max(piece, neighbour)); }
+  friend bool operator<(const CrackFace& a, const CrackFace& b) { return a.key() < b.key(); }
 };
 
 CrackFace crackFace(const Triangle& t, Index piece, Index neighbour) {
@@ -137,7 +140,7 @@ std::size_t lonelyAmong(std::vector<CrackFace> faces) {
   std::size_t lonely = 0;
   for (std::size_t i = 0; i < faces.size();) {
     std::size_t n = i;
-    while (n < faces.size() && faces[n].sorted == faces[i].sorted) ++n;
+    while (n < faces.size() && faces[n].key() == faces[i].key()) ++n;
     const bool twins = n == i + 2 && faces[i].odd != faces[i + 1].odd &&
                        faces[i].piece == faces[i + 1].neighbour && faces[i].neighbour == faces[i + 1].piece &&
                        faces[i].piece != faces[i].neighbour;
@@ -258,6 +261,13 @@ bool meetBeyondCorners(const std::vector<Vec3>& positions, const Triangle& s, co
   }
 }
 
+std::size_t flatAmong(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
+  return static_cast<std::size_t>(std::count_if(triangles.begin(), triangles.end(), [&](const Triangle& t) {
+    return CGAL::collinear(pointOf(positions[at(t[0])]), pointOf(positions[at(t[1])]),
+                           pointOf(positions[at(t[2])]));
+  }));
+}
+
 struct Found {};
 
 }  // namespace
@@ -303,6 +313,7 @@ FractureCheck checkFracture(const Fragments& f, const FractureCheckParams& param
     check.triangles += solid.size();
     checkPiece(f.positions, solid, origin, check, volume);
     checkSkin(f, piece, size, check);
+    if (params.selfIntersections) check.flat += flatAmong(f.positions, solid);
     if (params.selfIntersections) check.selfIntersecting += intersectsItself(f.positions, solid);
     solids.push_back(std::move(solid));
   }
@@ -314,6 +325,10 @@ FractureCheck checkFracture(const Fragments& f, const FractureCheckParams& param
   }
   check.volumeError = static_cast<double>(std::abs(volume - wholeVolume) / std::abs(wholeVolume));
   check.areaError = static_cast<double>(std::abs(area - wholeArea) / wholeArea);
+  const Box box = boxOf(source.positions);
+  const double ulp = std::numeric_limits<double>::epsilon() *
+                     std::max(box.low.cwiseAbs().maxCoeff(), box.high.cwiseAbs().maxCoeff());
+  check.rounding = static_cast<double>(ulp * wholeArea / std::abs(wholeVolume));
   samplePoints(f, solids, params.points, check);
   return check;
 }
@@ -323,7 +338,7 @@ bool FractureCheck::good() const {
          openEdges + degenerate + severalParts + notPositive + lonelyCracks + changedSources + pointsInNone +
                  pointsInMany + pointsOutside ==
              0 &&
-         volumeError < 1e-9 && areaError < 1e-9 && offSource < 1e-9 && weightError < 1e-7;
+         volumeError < std::max(1e-9, rounding) && areaError < 1e-9 && offSource < 1e-9 && weightError < 1e-7;
 }
 
 std::string FractureCheck::text() const {
@@ -344,7 +359,7 @@ std::string FractureCheck::text() const {
   auto exceeds = [&](const char* what, double value, double limit = 1e-9) {
     if (!(value < limit)) text += fmt::format("{}{} {:.2e}", text.empty() ? "" : ", ", what, value);
   };
-  exceeds("volume error", volumeError);
+  exceeds("volume error", volumeError, std::max(1e-9, rounding));
   exceeds("area error", areaError);
   exceeds("distance from the source", offSource);
   exceeds("error of weights at cuts", weightError, 1e-7);

@@ -30,6 +30,8 @@ struct FractureCheck {
   double areaError = 0;    ///< the same for the outer skin
   double offSource = 0;    ///< largest distance of a skin corner from the source, over the body's diagonal
   std::size_t points = 0, pointsInNone = 0, pointsInMany = 0, pointsOutside = 0;
+  double rounding = 0;   ///< of the volume, where new vertices stand in the coordinates' own precision
+  std::size_t flat = 0;  ///< triangles with three corners on a line; with selfIntersections
   std::size_t selfIntersecting = 0;  ///< pieces; counted, not judged
 
   bool good() const;

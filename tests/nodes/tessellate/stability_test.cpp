@@ -32,7 +32,8 @@ extern "C" void tellCase(int signal) {
 }
 
 struct Totals {
-  std::size_t cases = 0, failed = 0, selfIntersecting = 0, pieces = 0, forced = 0, renamedDiffer = 0;
+  std::size_t cases = 0, failed = 0, selfIntersecting = 0, flat = 0, pieces = 0, forced = 0,
+              renamedDiffer = 0;
 };
 
 Digest digestOf(const Fragments& f) {
@@ -101,6 +102,7 @@ std::string broken(const AdversarialCase& made, const TessellateParams& params, 
   const FractureCheck check = checkFracture(*one, {.points = slow ? 40u : 5u, .selfIntersections = slow});
   totals.selfIntersecting += check.selfIntersecting;
   totals.pieces += check.pieces;
+  totals.flat += check.flat;
   totals.forced += one->counts.forcedTriangles;
   std::string what = check.good() ? "" : check.text();
   const auto two = tessellate(made.cells, params, Exec{});
@@ -138,10 +140,11 @@ void run(const std::string& family, AdversarialCase (*make)(std::uint64_t), Tess
   ::testing::Test::RecordProperty("cases", static_cast<int>(totals.cases));
   if (slow)
     std::printf(
-        "%s: %zu cases, %zu failed, %zu pieces of which %zu intersect themselves, %zu forced triangles, "
+        "%s: %zu cases, %zu failed, %zu pieces of which %zu intersect themselves, %zu flat triangles, %zu "
+        "forced, "
         "%zu cases with other bits after renaming sites\n",
-        family.c_str(), totals.cases, totals.failed, totals.pieces, totals.selfIntersecting, totals.forced,
-        totals.renamedDiffer);
+        family.c_str(), totals.cases, totals.failed, totals.pieces, totals.selfIntersecting, totals.flat,
+        totals.forced, totals.renamedDiffer);
 }
 
 TEST(Stability, ExactCells) { run("exact", adversarialCase, {.cells = CellMode::Exact}, 1, 150, false); }
