@@ -11,9 +11,10 @@ namespace sherd::bench {
 
 struct PeerCut {
   double milliseconds = 0;  ///< of the intersections alone; making the cells' polyhedra is not counted
-  std::size_t pieces = 0;   ///< that came out with a volume
-  std::size_t failed = 0;   ///< cells whose intersection CGAL gave up on
-  double volumeError = 0;   ///< |Σ − source| / source
+  double processorMilliseconds = 0;
+  std::size_t pieces = 0;  ///< that came out with a volume
+  std::size_t failed = 0;  ///< cells whose intersection CGAL gave up on
+  double volumeError = 0;  ///< |Σ − source| / source
 };
 
 /// Voronoi cells in space, where the polyhedra are convex: the easiest case for it.

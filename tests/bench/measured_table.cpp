@@ -10,8 +10,12 @@
 namespace sherd::bench {
 namespace {
 
-std::map<std::string, double>& medians() {
-  static std::map<std::string, double> known;
+struct Median {
+  double real = 0, processor = 0;  ///< ms
+};
+
+std::map<std::string, Median>& medians() {
+  static std::map<std::string, Median> known;
   return known;
 }
 
@@ -22,7 +26,7 @@ class Remembering : public benchmark::ConsoleReporter {
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs)
       if (run.run_type == Run::RT_Aggregate && run.aggregate_name == "median")
-        medians()[run.run_name.function_name] = run.GetAdjustedRealTime();
+        medians()[run.run_name.function_name] = {run.GetAdjustedRealTime(), run.counters.at(kProcessorTime)};
     ConsoleReporter::ReportRuns(runs);
   }
 };
@@ -35,10 +39,8 @@ void runMeasured() {
   benchmark::ClearRegisteredBenchmarks();
 }
 
-double medianOf(const std::string& name) {
-  const auto found = medians().find(name);
-  return found == medians().end() ? 0 : found->second;
-}
+double medianOf(const std::string& name) { return medians()[name].real; }
+double processorMedianOf(const std::string& name) { return medians()[name].processor; }
 
 std::string number(double value) {
   if (!std::isfinite(value)) return "";

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -14,6 +15,10 @@
 
 namespace sherd::bench {
 
+/// The counter that holds the processor time of all threads, ms: what is left to compare on a machine that
+/// others use as well.
+inline constexpr const char* kProcessorTime = "cpu_ms";
+
 /// Registers a benchmark of `make`; releasing what it returns is not timed. `made` is called with the last
 /// one.
 template <class Make, class Made>
@@ -21,9 +26,12 @@ void timeOf(const std::string& name, int repetitions, Make make, std::function<v
   benchmark::RegisterBenchmark(name.c_str(),
                                [=](benchmark::State& state) {
                                  for (auto _ : state) {
+                                   const std::clock_t cpuStart = std::clock();
                                    const auto start = std::chrono::steady_clock::now();
                                    auto result = make();
                                    const auto end = std::chrono::steady_clock::now();
+                                   const auto cpu = static_cast<double>(std::clock() - cpuStart);
+                                   state.counters[kProcessorTime] = 1000 * cpu / CLOCKS_PER_SEC;
                                    state.SetIterationTime(std::chrono::duration<double>(end - start).count());
                                    benchmark::DoNotOptimize(result);
                                    if (made) made(result);
@@ -41,6 +49,8 @@ void runMeasured();
 
 /// ms, of a benchmark that has run; 0 where there is none.
 double medianOf(const std::string& name);
+/// ms of processor time, of all threads together.
+double processorMedianOf(const std::string& name);
 
 std::string number(double value);      ///< three digits that count
 std::string scientific(double value);  ///< 1.2e-09
