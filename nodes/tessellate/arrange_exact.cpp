@@ -97,11 +97,25 @@ class Arranger {
       ranks.insert(ranks.end(), exact_.ranks[at(p)].begin(), exact_.ranks[at(p)].end());
     std::sort(ranks.begin(), ranks.end());
     ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
+    std::vector<SheetPlane> planes;
+    for (Index p = first; p < last; ++p)
+      planes.emplace_back(frame, exact_.ranks[at(p)][0], exact_.ranks[at(p)][1]);
     for (Index h = heldBegin; h < heldEnd; ++h) {
       const Index s = tets_.held[at(h)];
-      TriangleInTet triangle(frame, triangles_[at(s)], positions_);
-      labelCorners(triangle, triangles_[at(s)], tet, ranks);
-      for (Index p = first; p < last; ++p) addSegment(triangle, s, p, out);
+      const Triangle& corners = triangles_[at(s)];
+      const bool unlabelled = std::any_of(corners.begin(), corners.end(), [&](Index v) {
+        return tets_.vertexTet[at(v)] == tet && a_.surfaceLabel[at(v)] < 0;
+      });
+      const auto misses = [&](const SheetPlane& plane) {
+        const int sign = plane.sign(positions_[at(corners[0])]);
+        return sign != 0 && plane.sign(positions_[at(corners[1])]) == sign &&
+               plane.sign(positions_[at(corners[2])]) == sign;
+      };
+      if (!unlabelled && std::all_of(planes.begin(), planes.end(), misses)) continue;
+      TriangleInTet triangle(frame, corners, positions_);
+      labelCorners(triangle, corners, tet, ranks);
+      for (Index p = first; p < last; ++p)
+        if (!misses(planes[at(p - first)])) addSegment(triangle, s, p, out);
     }
   }
 

@@ -12,7 +12,6 @@ constexpr double kWellConditioned = 1e-11;  ///< relative error of weights up to
 }  // namespace
 
 TetFrame::TetFrame(const TetMesh& tets, const SiteValues& values, Index tet) {
-  double longest = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     corners[i] = tets.nodes[at(tets.tets[at(tet)][i])];
     g[i] = values.at(tets.tets[at(tet)][i]);
@@ -69,6 +68,21 @@ int TetFrame::sign(const Vec3& vertex, const std::array<Approx, 4>& coordinates,
   if (const int s = difference(coordinates, plus, minus).sign(); s != 0) return s;
   const AffineFunction f = differenceFunction(plus, minus);
   return vertexDeterminantSign(corners, std::span(&vertex, 1), std::span(&f, 1));
+}
+
+SheetPlane::SheetPlane(const TetFrame& frame, Index back, Index front)
+    : base(frame.corners[0]), normal(Vec3::Zero()) {
+  double size = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double d = frame.g[i][front] - frame.g[i][back];
+    normal += d * frame.inward[i];
+    size += std::abs(d);
+    if (i == 0) offset = d * frame.inward[0].dot(base - frame.base[0]);
+  }
+  // Twice what the coordinates bring along, for the sums here; corners are at most 3 longest edges apart in
+  // this norm.
+  error = 2 * frame.error * size;
+  errorAtBase = 2 * error * frame.longest;
 }
 
 TriangleInTet::TriangleInTet(const TetFrame& frame, const Triangle& corners, std::span<const Vec3> positions)

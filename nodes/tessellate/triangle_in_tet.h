@@ -14,6 +14,7 @@ namespace sherd {
 struct TetFrame {
   std::array<Vec3, 4> corners;
   std::array<Vec3, 4> base, inward;  ///< coordinate i of a point p is inward[i] · (p − base[i])
+  double longest = 0;                ///< m, largest extent along an axis
   double error = 0;                  ///< of a coordinate, per metre of ‖p − base‖₁
   std::array<const double*, 4> g{};
 
@@ -26,6 +27,19 @@ struct TetFrame {
   static AffineFunction cornerFunction(int corner);
   /// Sign of g_plus − g_minus at a surface vertex, with ties.
   int sign(const Vec3& vertex, const std::array<Approx, 4>& coordinates, Index plus, Index minus) const;
+};
+
+/// g_front − g_back in a tetrahedron, times six volumes, as one plane: a first and cheap look.
+struct SheetPlane {
+  Vec3 base, normal;
+  double offset = 0, error = 0, errorAtBase = 0;
+
+  SheetPlane(const TetFrame& frame, Index back, Index front);
+  /// +1 or −1 where the sign at a point is certain, else 0.
+  int sign(const Vec3& point) const {
+    const Vec3 d = point - base;
+    return Approx(normal.dot(d) + offset, error * d.cwiseAbs().sum() + errorAtBase).sign();
+  }
 };
 
 /// An end of a segment: on side `side` of the triangle, or else on the polygon's edge number `slot`.
