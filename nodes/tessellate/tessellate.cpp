@@ -66,6 +66,8 @@ Result<Fragments> tessellate(const Partition& cells, const TessellateParams& par
                                     std::max(params.minVolume * volume, params.minVolumeAbsolute),
                                     cells.material.density, exec);
   if (exec.cancelled()) return cancelledError();
+  if (!surface.piece.empty())  // names grow with depth: piece_0003_0002
+    for (Piece& piece : result.pieces) piece.name.replace(0, std::string_view("piece").size(), surface.piece);
   result.tets = tets;
   result.material = cells.material;
   result.sites = cells.siteCount();
