@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -11,8 +12,8 @@ namespace sherd {
 
 class DisjointSets {
  public:
-  explicit DisjointSets(std::size_t n) : parent_(n) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  explicit DisjointSets(std::size_t n) : parent_(n) {  // fewer than 2³²
+    std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
   }
 
   std::size_t find(std::size_t i) {
@@ -22,11 +23,11 @@ class DisjointSets {
   void join(std::size_t a, std::size_t b) {
     a = find(a), b = find(b);
     if (a > b) std::swap(a, b);
-    parent_[b] = a;
+    parent_[b] = static_cast<std::uint32_t>(a);
   }
 
  private:
-  std::vector<std::size_t> parent_;
+  std::vector<std::uint32_t> parent_;
 };
 
 }  // namespace sherd

@@ -80,20 +80,27 @@ class Arranger {
   }
 
   void findSegments() {
+    a_.surfaceLabel.assign(positions_.size(), -1);
     found_.resize((cutTets_ + kBlock - 1) / kBlock);
     parallelFor(exec_, cutTets_, kBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) searchTet(i, found_[begin / kBlock]);
     });
   }
 
-  void searchTet(std::size_t cut, FoundSegments& out) const {
+  void searchTet(std::size_t cut, FoundSegments& out) {
     const Index first = tetBegin_[cut], last = tetBegin_[cut + 1], tet = sheets_.polygons[at(first)].tet;
     const Index heldBegin = tets_.heldBegin[at(tet)], heldEnd = tets_.heldBegin[at(tet) + 1];
     if (heldBegin == heldEnd) return;
     const TetFrame frame(tets_, values_, tet);
+    std::vector<Index> ranks;
+    for (Index p = first; p < last; ++p)
+      ranks.insert(ranks.end(), exact_.ranks[at(p)].begin(), exact_.ranks[at(p)].end());
+    std::sort(ranks.begin(), ranks.end());
+    ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
     for (Index h = heldBegin; h < heldEnd; ++h) {
       const Index s = tets_.held[at(h)];
       TriangleInTet triangle(frame, triangles_[at(s)], positions_);
+      labelCorners(triangle, triangles_[at(s)], tet, ranks);
       for (Index p = first; p < last; ++p) addSegment(triangle, s, p, out);
     }
   }
@@ -276,19 +283,16 @@ class Arranger {
     return {polygon, corner - sheets_.polygons[at(polygon)].first};
   }
 
-  /// The cell of every surface vertex: the only one of its tetrahedron, or the least of those that share
-  /// that.
+  /// The cell of every surface vertex is the only one of its tetrahedron; searchTet has found those in cut
+  /// ones.
   Result<void> checkLabels() {
-    const std::size_t n = positions_.size();
-    a_.surfaceLabel.assign(n, -1);
-    parallelFor(exec_, n, 1024, [&](std::size_t begin, std::size_t end) {
-      std::vector<Index> ranks;
-      for (std::size_t v = begin; v < end; ++v)
-        if (tets_.vertexTet[v] >= 0) a_.surfaceLabel[v] = labelOf(v, ranks);
-    });
-    if (exec_.cancelled()) return cancelledError();
-    if (std::find(a_.surfaceLabel.begin(), a_.surfaceLabel.end(), -1) != a_.surfaceLabel.end())
-      return inconsistentCut("a vertex of the surface lies in no tetrahedron");
+    for (std::size_t v = 0; v < positions_.size(); ++v) {
+      if (a_.surfaceLabel[v] >= 0) continue;
+      const Index tet = tets_.vertexTet[v];
+      if (tet < 0 || cutTet_[at(tet)] >= 0)
+        return inconsistentCut("a vertex of the surface lies in no tetrahedron");
+      a_.surfaceLabel[v] = values_.site(values_.least(tets_.tets[at(tet)][0]));
+    }
     for (std::size_t e = 0; e < a_.cutEdges.size(); ++e) {
       const auto on = a_.surfaceCrossings.on(static_cast<Index>(e));
       if (cellsAcross(sheets_, on.front())[0] != a_.surfaceLabel[at(a_.cutEdges[e][0])] ||
@@ -298,19 +302,17 @@ class Arranger {
     return {};
   }
 
-  Index labelOf(std::size_t vertex, std::vector<Index>& ranks) const {
-    const Index tet = tets_.vertexTet[vertex], cut = cutTet_[at(tet)];
-    if (cut < 0) return values_.site(values_.least(tets_.tets[at(tet)][0]));
-    ranks.clear();
-    for (Index p = tetBegin_[at(cut)]; p < tetBegin_[at(cut) + 1]; ++p)
-      ranks.insert(ranks.end(), exact_.ranks[at(p)].begin(), exact_.ranks[at(p)].end());
-    const TetFrame frame(tets_, values_, tet);
-    const SurfaceVertex own{static_cast<Index>(vertex), positions_[vertex]};
-    const auto coordinates = frame.coordinates(own.point);
-    Index best = ranks.front();
-    for (const Index r : ranks)
-      if (r != best && frame.sign(own, coordinates, r, best) < 0) best = r;
-    return values_.site(best);
+  /// The least site at a corner that lies in the tetrahedron, among those that share that. No other task
+  /// writes there.
+  void labelCorners(const TriangleInTet& triangle, const Triangle& corners, Index tet,
+                    std::span<const Index> ranks) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (tets_.vertexTet[at(corners[c])] != tet || a_.surfaceLabel[at(corners[c])] >= 0) continue;
+      Index best = ranks.front();
+      for (const Index r : ranks)
+        if (r != best && triangle.signOfDifference(c, r, best) < 0) best = r;
+      a_.surfaceLabel[at(corners[c])] = values_.site(best);
+    }
   }
 
   const TetMesh& tets_;

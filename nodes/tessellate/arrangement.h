@@ -72,4 +72,10 @@ Result<Arrangement> arrangeExact(const TetMesh& tets, const ExactSheets& exact, 
 Result<Arrangement> arrangeRounded(const TetMesh& tets, std::span<const Index> nodeLabel,
                                    const Sheets& sheets, const Exec& exec);
 
+/// The cage's boundary as the surface: the sheets end on it, and nothing is clipped. `tets.surface` is that
+/// boundary with its triangles in the order of TetMesh::boundary; `nodeOf`: per surface vertex its node;
+/// `nodeCell`: per node its cell. Cost O(boundary + sheets).
+Result<Arrangement> arrangeConforming(const TetMesh& tets, std::span<const Index> nodeOf,
+                                      std::span<const Index> nodeCell, const Sheets& sheets);
+
 }  // namespace sherd

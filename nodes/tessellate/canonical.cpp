@@ -135,6 +135,7 @@ class Builder {
       for (std::size_t i = 0; i < nodes.size(); ++i)
         point += w[static_cast<Eigen::Index>(i)] * tets_.nodes[at(nodes[i])];
       sheets_.vertices.push_back(point);
+      sheets_.simplexOf.push_back(key);
     }
     return found->second;
   }
@@ -212,6 +213,9 @@ class Builder {
     Vec3 mean = Vec3::Zero();
     for (const Index v : {f0, f1, bc, a0b, a1b, a0c, a1c}) mean += sheets_.vertices[at(v)] / 7;
     sheets_.vertices.push_back(mean);
+    Tetra all = s;
+    std::sort(all.begin(), all.end());
+    sheets_.simplexOf.push_back(all);
     const std::array<std::array<Index, 4>, 8> fan{{{bc, f0, b, c},
                                                    {f1, bc, b, c},
                                                    {a0b, f0, a, b},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -172,10 +173,7 @@ class Clipper {
     if (!crossed && !a_.sheetInside[at(own[0])]) return 0;
     std::vector<Index> corners(own.begin(), own.end());
     for (Index& v : corners) v += a_.firstCrack;
-    if (!crossed && corners.size() == 3 && differ(corners)) {
-      out.push_back({{corners[0], corners[1], corners[2]}, p.front, p.back});
-      return 0;
-    }
+    if (!crossed && fan(corners, p, out)) return 0;
     cut.begin(corners);
     for (std::size_t side = 0; side < corners.size(); ++side)
       walkSide(a_.sheetCrossings.on(edges[side]), sheets_.forward(p, static_cast<Index>(side)), corners[side],
@@ -189,6 +187,31 @@ class Clipper {
       cut.addHalfEdge(segment.to, segment.from, 0);
     }
     return cut.triangulate([&](const Triangle& t, Index) { out.push_back({t, p.front, p.back}); });
+  }
+
+  /// A whole polygon, which is convex, by a fan from the corner that makes its smallest triangle largest.
+  /// False where rounding leaves that flat.
+  bool fan(std::span<const Index> corners, const SheetPolygon& p, std::vector<SheetTriangle>& out) const {
+    if (!differ(corners)) return false;
+    const std::size_t n = corners.size();
+    const auto corner = [&](std::size_t i) { return corners[i % n]; };
+    std::size_t best = 0;
+    double largest = 0, longest = 0;
+    for (std::size_t apex = 0; apex < (n == 3 ? 1 : n == 4 ? 2 : n); ++apex) {
+      double least = std::numeric_limits<double>::infinity();
+      const Vec3& origin = a_.positions[at(corner(apex))];
+      for (std::size_t i = 1; i + 1 < n; ++i) {
+        const Vec3 u = a_.positions[at(corner(apex + i))] - origin,
+                   v = a_.positions[at(corner(apex + i + 1))] - origin;
+        least = std::min(least, u.cross(v).squaredNorm());
+        longest = std::max({longest, u.squaredNorm(), v.squaredNorm()});
+      }
+      if (least > largest) best = apex, largest = least;
+    }
+    if (n > 3 && !(largest > 1e-16 * longest * longest)) return false;
+    for (std::size_t i = 1; i + 1 < n; ++i)
+      out.push_back({{corner(best), corner(best + i), corner(best + i + 1)}, p.front, p.back});
+    return true;
   }
 
   bool differ(std::span<const Index> corners) const {

@@ -325,6 +325,8 @@ ExactSheets exactSheets(const TetMesh& tets, const SiteValues& values, const Exe
     sheets.cutTets += block.cutTets;
   }
   sheets.vertices.resize(names.size());
+  sheets.simplexOf.reserve(names.size());
+  for (const VertexName& name : names) sheets.simplexOf.push_back(name.nodes);
   parallelFor(exec, names.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) sheets.vertices[v] = positionOf(names[v], values, tets);
   });

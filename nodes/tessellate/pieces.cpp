@@ -169,7 +169,9 @@ class Assembler {
       piece.surfaceCut.push_back(f < faces.firstSkin() ? -1 : static_cast<Index>(f - faces.firstSkin()));
     }
     out_.cutCorners.resize(m_.skin.size());
-    for (std::size_t i = 0; i < m_.skin.size(); ++i) weigh(m_.skin[i], out_.cutCorners[i]);
+    parallelFor(exec_, m_.skin.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) weigh(m_.skin[i], out_.cutCorners[i]);
+    });
     for (std::size_t f = faces.firstSheet(); f < faces.size(); ++f) {
       const Index own = pieceOfFace(solids, f), other = pieceOfFace(solids, faces.twin(f));
       if (own == other) continue;  // within one merged solid

@@ -25,7 +25,9 @@ struct Sheets {
   std::vector<Index> edgeOf;                ///< per corner: the edge from it to the polygon's next corner
   std::vector<std::array<Index, 2>> edges;  ///< ends, ends[0] < ends[1], ascending
   std::vector<unsigned char> onCage;  ///< per vertex: lies on the cage's boundary, outside of the surface
-  std::size_t cutTets = 0;            ///< tetrahedra with a polygon
+  std::vector<Tetra>
+      simplexOf;            ///< per vertex: the nodes, ascending and padded with −1, between which it lies
+  std::size_t cutTets = 0;  ///< tetrahedra with a polygon
 
   std::span<const Index> cornersOf(const SheetPolygon& p) const {
     return std::span(corners).subspan(at(p.first), at(p.count));

@@ -1,6 +1,9 @@
 #include "tessellate/symbolic_sign.h"
 
+#include <CGAL/Mpzf.h>
+#ifndef CGAL_HAS_MPZF
 #include <CGAL/Exact_rational.h>
+#endif
 
 #include <algorithm>
 #include <optional>
@@ -9,8 +12,13 @@
 namespace sherd {
 namespace {
 
-using Rational = CGAL::Exact_rational;
-using RationalVec = std::array<Rational, 3>;
+// Sums and products of doubles are all that is needed; no division.
+#ifdef CGAL_HAS_MPZF
+using Exact = CGAL::Mpzf;
+#else
+using Exact = CGAL::Exact_rational;
+#endif
+using ExactVec = std::array<Exact, 3>;
 
 /// A product of displacements: per row the axis along which its point is displaced, −1 for none.
 struct Term {
@@ -48,14 +56,14 @@ const std::vector<Term>& terms(std::size_t rows) {
 /// One function at all points: values, the gradient where points can be displaced, and the sites whose change
 /// it follows.
 struct Column {
-  std::array<Rational, 4> value;
-  RationalVec gradient;
+  std::array<Exact, 4> value;
+  ExactVec gradient;
   Index plus = -1, minus = -1;
 
   static Column ones() {
     Column c;
-    c.value.fill(Rational(1));
-    c.gradient.fill(Rational(0));
+    c.value.fill(Exact(1));
+    c.gradient.fill(Exact(0));
     return c;
   }
 };
@@ -80,14 +88,14 @@ class SymbolicMatrix {
 
   /// The determinant's coefficient of (change of `site`) · `term`, over `rows`, as many as columns. axis[row]
   /// is for the row's place in `rows`.
-  Rational coefficient(std::span<const int> rows, Index site, const Term& term) const {
+  Exact coefficient(std::span<const int> rows, Index site, const Term& term) const {
     if (site < 0) return determinant(columns_, rows, term);
-    Rational sum = 0;
+    Exact sum = 0;
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       if (columns_[c].plus != site && columns_[c].minus != site) continue;
       std::vector<Column> changed = columns_;
       changed[c] = Column::ones();
-      const Rational d = determinant(changed, rows, term);
+      const Exact d = determinant(changed, rows, term);
       // g_site is lowered.
       if (columns_[c].plus == site) sum -= d;
       if (columns_[c].minus == site) sum += d;
@@ -96,32 +104,31 @@ class SymbolicMatrix {
   }
 
  private:
-  static Rational entry(const Column& column, int row, int axis) {
+  static Exact entry(const Column& column, int row, int axis) {
     return axis < 0 ? column.value[static_cast<std::size_t>(row)]
                     : column.gradient[static_cast<std::size_t>(axis)];
   }
 
-  static Rational determinant(const std::vector<Column>& columns, std::span<const int> rows,
-                              const Term& term) {
+  static Exact determinant(const std::vector<Column>& columns, std::span<const int> rows, const Term& term) {
     const std::size_t n = rows.size();
-    std::array<std::array<Rational, 4>, 4> m;
+    std::array<std::array<Exact, 4>, 4> m;
     for (std::size_t r = 0; r < n; ++r)
       for (std::size_t c = 0; c < n; ++c) m[r][c] = entry(columns[c], rows[r], r < 3 ? term.axis[r] : -1);
     std::array<std::size_t, 4> left{0, 1, 2, 3};
     return expand(m, std::span(left).first(n), 0);
   }
 
-  static Rational expand(const std::array<std::array<Rational, 4>, 4>& m,
-                         std::span<const std::size_t> columns, std::size_t row) {
+  static Exact expand(const std::array<std::array<Exact, 4>, 4>& m, std::span<const std::size_t> columns,
+                      std::size_t row) {
     if (columns.size() == 1) return m[row][columns[0]];
-    Rational sum = 0;
+    Exact sum = 0;
     for (std::size_t i = 0; i < columns.size(); ++i) {
       if (m[row][columns[i]] == 0) continue;
       std::array<std::size_t, 4> rest{};
       for (std::size_t k = 0, out = 0; k < columns.size(); ++k)
         if (k != i) rest[out++] = columns[k];
-      const Rational d = m[row][columns[i]] * expand(m, std::span(rest).first(columns.size() - 1), row + 1);
-      sum += i % 2 == 0 ? d : Rational(-d);
+      const Exact d = m[row][columns[i]] * expand(m, std::span(rest).first(columns.size() - 1), row + 1);
+      sum += i % 2 == 0 ? d : Exact(-d);
     }
     return sum;
   }
@@ -130,7 +137,7 @@ class SymbolicMatrix {
   std::vector<Index> sites_;
 };
 
-int signOf(const Rational& r) { return r > 0 ? 1 : r < 0 ? -1 : 0; }
+int signOf(const Exact& x) { return static_cast<int>(CGAL::sign(x)); }
 
 /// `displaced`: rows are points that are displaced, numbered in ascending order.
 int symbolicSign(const SymbolicMatrix& matrix, std::span<const int> rows, bool displaced) {
@@ -140,13 +147,21 @@ int symbolicSign(const SymbolicMatrix& matrix, std::span<const int> rows, bool d
   return 1;  // two columns are one and the same function: the caller never asks
 }
 
+/// Weights with a common denominator.
+template <std::size_t Size>
+struct Weights {
+  std::array<Exact, Size> part;
+  Exact sum;
+
+  double ratio(std::size_t i) const { return CGAL::to_double(part[i]) / CGAL::to_double(sum); }
+};
+
 /// Null vector of the n × (n − 1) matrix by its minors, from the greatest term in which it does not vanish.
 template <std::size_t Size>
-std::array<Rational, Size> symbolicWeights(const SymbolicMatrix& matrix, std::size_t n, bool displaced) {
-  std::array<Rational, Size> weights;
+Weights<Size> symbolicWeights(const SymbolicMatrix& matrix, std::size_t n, bool displaced) {
+  Weights<Size> weights;
   for (const Term& term : terms(displaced ? n : 0)) {
-    std::array<Rational, Size> minors;
-    Rational sum = 0;
+    weights.sum = 0;
     for (std::size_t i = 0; i < n; ++i) {
       std::array<int, Size> rows{};
       Term own;
@@ -159,15 +174,14 @@ std::array<Rational, Size> symbolicWeights(const SymbolicMatrix& matrix, std::si
         if (out < 3) own.axis[out] = k < 3 ? term.axis[k] : -1;
         rows[out++] = static_cast<int>(k);
       }
-      const Rational d = without ? matrix.coefficient(std::span(rows).first(n - 1), -1, own) : Rational(0);
-      minors[i] = i % 2 == 0 ? d : Rational(-d);
-      sum += minors[i];
+      const Exact d = without ? matrix.coefficient(std::span(rows).first(n - 1), -1, own) : Exact(0);
+      weights.part[i] = i % 2 == 0 ? d : Exact(-d);
+      weights.sum += weights.part[i];
     }
-    if (sum == 0) continue;
-    for (std::size_t i = 0; i < n; ++i) weights[i] = minors[i] / sum;
-    return weights;
+    if (weights.sum != 0) return weights;
   }
-  for (std::size_t i = 0; i < n; ++i) weights[i] = Rational(1) / Rational(static_cast<int>(n));
+  for (std::size_t i = 0; i < n; ++i) weights.part[i] = 1;
+  weights.sum = static_cast<int>(n);
   return weights;
 }
 
@@ -179,7 +193,7 @@ std::vector<Column> nodeColumns(std::span<const int> nodes, std::span<const Affi
     columns[c].minus = f.minus;
     for (std::size_t r = 0; r < nodes.size(); ++r) {
       const auto node = static_cast<std::size_t>(nodes[r]);
-      columns[c].value[r] = Rational(*f.plusAt[node]) - Rational(*f.minusAt[node]);
+      columns[c].value[r] = Exact(*f.plusAt[node]) - Exact(*f.minusAt[node]);
     }
   }
   return columns;
@@ -190,11 +204,11 @@ class ExactTet {
  public:
   explicit ExactTet(const std::array<Vec3, 4>& corners) {
     for (std::size_t i = 0; i < 4; ++i) {
-      std::array<RationalVec, 3> p;
+      std::array<ExactVec, 3> p;
       for (std::size_t k = 0; k < 3; ++k) p[k] = exact(corners[static_cast<std::size_t>(kTetraFace[i][k])]);
       base_[i] = p[0];
       // The face turns counter-clockwise from outside; the coordinate grows inward.
-      const RationalVec u = difference(p[2], p[0]), v = difference(p[1], p[0]);
+      const ExactVec u = difference(p[2], p[0]), v = difference(p[1], p[0]);
       for (std::size_t k = 0; k < 3; ++k)
         gradient_[i][k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
     }
@@ -202,10 +216,10 @@ class ExactTet {
 
   Column column(const AffineFunction& f, std::span<const SurfaceVertex> vertices) const {
     Column c;
-    c.gradient.fill(Rational(0));
+    c.gradient.fill(Exact(0));
     for (std::size_t i = 0; i < 4; ++i) {
-      Rational weight = i == static_cast<std::size_t>(f.corner) ? 1 : 0;
-      if (f.corner < 0) weight = Rational(*f.plusAt[i]) - Rational(*f.minusAt[i]);
+      Exact weight = i == static_cast<std::size_t>(f.corner) ? 1 : 0;
+      if (f.corner < 0) weight = Exact(*f.plusAt[i]) - Exact(*f.minusAt[i]);
       if (weight == 0) continue;
       for (std::size_t k = 0; k < 3; ++k) c.gradient[k] += weight * gradient_[i][k];
       for (std::size_t r = 0; r < vertices.size(); ++r)
@@ -216,16 +230,16 @@ class ExactTet {
   }
 
  private:
-  static RationalVec exact(const Vec3& p) { return {Rational(p.x()), Rational(p.y()), Rational(p.z())}; }
-  static RationalVec difference(const RationalVec& a, const RationalVec& b) {
-    return {Rational(a[0] - b[0]), Rational(a[1] - b[1]), Rational(a[2] - b[2])};
+  static ExactVec exact(const Vec3& p) { return {Exact(p.x()), Exact(p.y()), Exact(p.z())}; }
+  static ExactVec difference(const ExactVec& a, const ExactVec& b) {
+    return {Exact(a[0] - b[0]), Exact(a[1] - b[1]), Exact(a[2] - b[2])};
   }
-  Rational coordinate(std::size_t i, const Vec3& point) const {
-    const RationalVec d = difference(exact(point), base_[i]);
+  Exact coordinate(std::size_t i, const Vec3& point) const {
+    const ExactVec d = difference(exact(point), base_[i]);
     return gradient_[i][0] * d[0] + gradient_[i][1] * d[1] + gradient_[i][2] * d[2];
   }
 
-  std::array<RationalVec, 4> base_, gradient_;
+  std::array<ExactVec, 4> base_, gradient_;
 };
 
 /// Vertices by ascending number, as the displacements want them.
@@ -256,16 +270,22 @@ SymbolicMatrix vertexMatrix(const std::array<Vec3, 4>& tet, std::span<const Surf
 
 constexpr std::array<int, 4> kRows{0, 1, 2, 3};
 
-/// The limit point where two functions vanish on a triangle.
-RationalVec meetingPoint(const std::array<Vec3, 4>& tet, std::span<const AffineFunction> functions,
-                         std::span<const SurfaceVertex> triangle) {
+/// The limit point where two functions vanish on a triangle, over its weights' sum.
+struct MeetingPoint {
+  ExactVec point{0, 0, 0};
+  Exact sum;
+};
+
+MeetingPoint meetingPoint(const std::array<Vec3, 4>& tet, std::span<const AffineFunction> functions,
+                          std::span<const SurfaceVertex> triangle) {
   const OrderedVertices ordered(triangle);
   const auto weights = symbolicWeights<3>(vertexMatrix(tet, ordered.list, functions), 3, true);
-  RationalVec point{0, 0, 0};
+  MeetingPoint result;
+  result.sum = weights.sum;
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t k = 0; k < 3; ++k)
-      point[k] += weights[i] * Rational(ordered.list[i].point[static_cast<Eigen::Index>(k)]);
-  return point;
+      result.point[k] += weights.part[i] * Exact(ordered.list[i].point[static_cast<Eigen::Index>(k)]);
+  return result;
 }
 
 }  // namespace
@@ -278,8 +298,7 @@ int nodeDeterminantSign(std::span<const int> nodes, std::span<const AffineFuncti
 std::array<double, 4> nodeWeights(std::span<const int> nodes, std::span<const AffineFunction> functions) {
   const auto local = symbolicWeights<4>(SymbolicMatrix(nodeColumns(nodes, functions)), nodes.size(), false);
   std::array<double, 4> weights{};
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    weights[static_cast<std::size_t>(nodes[i])] = CGAL::to_double(local[i]);
+  for (std::size_t i = 0; i < nodes.size(); ++i) weights[static_cast<std::size_t>(nodes[i])] = local.ratio(i);
   return weights;
 }
 
@@ -297,29 +316,31 @@ std::array<double, 3> vertexWeights(const std::array<Vec3, 4>& tet, std::span<co
   const std::span<const SurfaceVertex> list(ordered.list.data(), vertices.size());
   const auto local = symbolicWeights<3>(vertexMatrix(tet, list, functions), vertices.size(), true);
   std::array<double, 3> weights{};
-  for (std::size_t i = 0; i < vertices.size(); ++i) weights[ordered.place[i]] = CGAL::to_double(local[i]);
+  for (std::size_t i = 0; i < vertices.size(); ++i) weights[ordered.place[i]] = local.ratio(i);
   return weights;
 }
 
 int compareAlongEdge(std::span<const SurfaceVertex> vertices, const std::array<Vec3, 4>& tetOfF,
                      const AffineFunction& f, const std::array<Vec3, 4>& tetOfG, const AffineFunction& g) {
-  // Weights of q in the two points.
-  const auto share = [&](const std::array<Vec3, 4>& tet, const AffineFunction& function) {
-    return symbolicWeights<3>(vertexMatrix(tet, vertices, std::span(&function, 1)), 2, true)[1];
+  // By the weights of q in the two points.
+  const auto weights = [&](const std::array<Vec3, 4>& tet, const AffineFunction& function) {
+    return symbolicWeights<3>(vertexMatrix(tet, vertices, std::span(&function, 1)), 2, true);
   };
-  return signOf(Rational(share(tetOfF, f) - share(tetOfG, g)));
+  const auto a = weights(tetOfF, f), b = weights(tetOfG, g);
+  return signOf(Exact(a.part[1] * b.sum - b.part[1] * a.sum)) * signOf(a.sum) * signOf(b.sum);
 }
 
 int compareAlongLine(const std::array<Vec3, 4>& tet, const AffineFunction& f, const AffineFunction& g,
                      std::span<const SurfaceVertex> first, std::span<const SurfaceVertex> second) {
   const ExactTet exact(tet);
-  const RationalVec a = exact.column(g, {}).gradient, b = exact.column(f, {}).gradient;
+  const ExactVec a = exact.column(g, {}).gradient, b = exact.column(f, {}).gradient;
   const std::array<AffineFunction, 2> functions{f, g};
-  const RationalVec from = meetingPoint(tet, functions, first), to = meetingPoint(tet, functions, second);
-  Rational along = 0;
+  const MeetingPoint from = meetingPoint(tet, functions, first), to = meetingPoint(tet, functions, second);
+  Exact along = 0;
   for (std::size_t k = 0; k < 3; ++k)
-    along += (a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]) * (to[k] - from[k]);
-  return -signOf(along);
+    along += (a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]) *
+             (to.point[k] * from.sum - from.point[k] * to.sum);
+  return -signOf(along) * signOf(from.sum) * signOf(to.sum);
 }
 
 }  // namespace sherd

@@ -35,6 +35,56 @@ Result<Cut> cutCanonically(const TetMesh& tets, const Partition& cells, const Ex
   return cut;
 }
 
+/// The cage with its own boundary as the surface, and per surface vertex its node.
+struct OwnSurface {
+  std::shared_ptr<const TetMesh> tets;
+  std::vector<Index> nodeOf;
+};
+
+OwnSurface ownSurface(const TetMesh& cage) {
+  OwnSurface own;
+  std::vector<Index> vertexOf(cage.nodes.size(), -1);
+  for (const Triangle& face : cage.boundary)
+    for (const Index n : face) vertexOf[at(n)] = 0;
+  auto surface = std::make_shared<TriMesh>();
+  for (std::size_t n = 0; n < vertexOf.size(); ++n) {
+    if (vertexOf[n] < 0) continue;
+    vertexOf[n] = static_cast<Index>(own.nodeOf.size());
+    own.nodeOf.push_back(static_cast<Index>(n));
+    surface->positions.push_back(cage.nodes[n]);
+  }
+  for (const Triangle& f : cage.boundary)
+    surface->triangles.push_back({vertexOf[at(f[0])], vertexOf[at(f[1])], vertexOf[at(f[2])]});
+  surface->frame = cage.surface->frame;
+  surface->source = cage.surface->source;
+  surface->piece = cage.surface->piece;
+  auto tets = std::make_shared<TetMesh>(cage);
+  tets->surface = surface;
+  tets->insideFraction.assign(cage.tets.size(), 1);
+  tets->held.clear();
+  tets->heldBegin.assign(cage.tets.size() + 1, 0);
+  linkSurface(*tets, Exec{});
+  own.tets = tets;
+  return own;
+}
+
+Result<Cut> cutConforming(const OwnSurface& own, const Partition& cells, CellMode mode, const Exec& exec) {
+  Cut cut;
+  std::vector<Index> nodeCell = cells.label;
+  if (mode == CellMode::Exact) {
+    const SiteValues values(cells, exec);
+    if (exec.cancelled()) return cancelledError();
+    cut.sheets = exactSheets(*own.tets, values, exec).sheets;
+    for (std::size_t n = 0; n < nodeCell.size(); ++n)
+      nodeCell[n] = values.site(values.least(static_cast<Index>(n)));
+  } else {
+    cut.sheets = canonicalSheets(cells);
+  }
+  if (exec.cancelled()) return cancelledError();
+  SHERD_ASSIGN(cut.arrangement, arrangeConforming(*own.tets, own.nodeOf, nodeCell, cut.sheets));
+  return cut;
+}
+
 std::size_t emptyCells(const Partition& cells, const Arrangement& arrangement, const ClippedMeshes& meshes) {
   std::vector<bool> holds(cells.siteCount(), false);
   for (const Index cell : arrangement.surfaceLabel) holds[at(cell)] = true;
@@ -46,15 +96,21 @@ std::size_t emptyCells(const Partition& cells, const Arrangement& arrangement, c
 }  // namespace
 
 Result<Fragments> tessellate(const Partition& cells, const TessellateParams& params, const Exec& exec) {
+  OwnSurface own;
   std::shared_ptr<const TetMesh> tets = cells.embedding->tets;
-  if (tets->vertexTet.empty() || tets->surfaceNeighbours.empty()) {
+  if (params.surface == SurfaceMode::Conforming) {
+    own = ownSurface(*tets);
+    tets = own.tets;
+  } else if (tets->vertexTet.empty() || tets->surfaceNeighbours.empty()) {
     auto linked = std::make_shared<TetMesh>(*tets);
     linkSurface(*linked, exec);
     tets = linked;
   }
   const TriMesh& surface = *tets->surface;
-  SHERD_ASSIGN(const Cut cut, params.cells == CellMode::Exact ? cutExactly(*tets, cells, exec)
-                                                              : cutCanonically(*tets, cells, exec));
+  SHERD_ASSIGN(const Cut cut, params.surface == SurfaceMode::Conforming
+                                  ? cutConforming(own, cells, params.cells, exec)
+                              : params.cells == CellMode::Exact ? cutExactly(*tets, cells, exec)
+                                                                : cutCanonically(*tets, cells, exec));
   if (exec.cancelled()) return cancelledError();
   exec.progress(0.5);
   ClippedMeshes meshes = clip(cut.arrangement, cut.sheets, exec);

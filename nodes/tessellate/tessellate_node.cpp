@@ -35,6 +35,10 @@ NodeType tessellateNode() {
       .choice(
           "cells", &TessellateParams::cells, {{"exact", CellMode::Exact}, {"canonical", CellMode::Canonical}},
           "exact: where each site is nearest; canonical: the paper's four schemes on the labels at the nodes")
+      .choice(
+          "surface", &TessellateParams::surface,
+          {{"original", SurfaceMode::Original}, {"conforming", SurfaceMode::Conforming}},
+          "original: the model's own surface is cut; conforming: the tetrahedral mesh's, a quick stand-in")
       .number(
           "min_volume", &TessellateParams::minVolume,
           {.min = 0,

@@ -7,7 +7,7 @@ namespace sherd {
 namespace {
 
 constexpr double kUnit = 0x1p-53;
-constexpr double kWellConditioned = 1e-13;  ///< relative error of weights up to which doubles are good enough
+constexpr double kWellConditioned = 1e-11;  ///< relative error of weights up to which doubles are good enough
 
 }  // namespace
 

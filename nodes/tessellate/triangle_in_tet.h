@@ -43,6 +43,10 @@ class TriangleInTet {
   /// lines, directed so that the back cell is on its left; false where they miss each other.
   bool meets(Index back, Index front, std::span<const SheetEdgeLine> lines, SegmentEnd& from, SegmentEnd& to);
 
+  /// Sign of g_plus − g_minus at a corner, with ties.
+  int signOfDifference(std::size_t corner, Index plus, Index minus) const {
+    return frame_.sign(vertices_[corner], coordinates_[corner], plus, minus);
+  }
   /// Sign of g_front − g_back of the last polygon at a corner.
   int signAtCorner(std::size_t corner) const { return signs_[corner]; }
   /// Weights of the corners in an end of the last polygon's segment.

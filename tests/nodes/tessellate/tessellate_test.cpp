@@ -56,6 +56,91 @@ Digest digestOf(const Fragments& f) {
   return hasher.digest();
 }
 
+TEST(Tessellate, ACellThatIsNearestAtNoNodeIsThere) {
+  // One cube of six tetrahedra as cage, 60 sites within the box inside of it: hardly any is nearest at a
+  // node.
+  const auto tets = families::cagedInBlock(families::boxSurface(Vec3(-1, -1, -1), Vec3(1, 1, 1), 3, 3, 3), 1);
+  const std::vector<Vec3> sites = randomSites(*tets, 60, 11);
+  const Fragments f = breakAt(tets, sites, 0);
+  expectPromises(f);
+  EXPECT_EQ(f.pieces.size(), 60u);
+  EXPECT_EQ(f.counts.emptyCells, 0u);
+  // Each piece is a convex cell that holds its site, and whose corners are no nearer to any other.
+  for (const Piece& piece : f.pieces)
+    for (const Triangle& t : piece.crack)
+      for (const Index v : t) {
+        const Vec3& x = f.positions[at(v)];
+        const double own = (x - sites[at(piece.cell)]).norm();
+        for (const Vec3& other : sites) EXPECT_GE((x - other).norm(), own - 1e-12);
+      }
+}
+
+TEST(Tessellate, SlabsHaveTheirVolumes) {
+  const auto tets = families::cagedInBlock(families::boxSurface(Vec3(-1, -1, -1), Vec3(1, 1, 1), 5, 4, 3), 4);
+  const std::vector<double> at{-0.95, -0.6, -0.55, 0.1, 0.8, 0.81};
+  std::vector<Vec3> sites;
+  for (const double x : at) sites.emplace_back(x, 0.3, -0.2);
+  const Fragments f = breakAt(tets, sites, 0);
+  expectPromises(f);
+  ASSERT_EQ(f.pieces.size(), at.size());
+  for (const Piece& piece : f.pieces) {
+    const std::size_t s = static_cast<std::size_t>(piece.cell);
+    const double low = s == 0 ? -1 : (at[s - 1] + at[s]) / 2,
+                 high = s + 1 == at.size() ? 1 : (at[s] + at[s + 1]) / 2;
+    EXPECT_NEAR(piece.volume, 4 * (high - low), 1e-12);
+  }
+}
+
+TEST(Tessellate, CoincidentSitesLeaveOneOfThemEmpty) {
+  const auto tets = families::cagedInBlock(families::sphereSurface(Vec3::Zero(), 1, 24, 12), 3);
+  const Vec3 a(0.4, 0.1, 0), b(-0.3, 0, 0.2);
+  const Fragments f = breakAt(tets, {a, b, a, a});
+  expectPromises(f);
+  EXPECT_EQ(f.pieces.size(), 2u);
+  EXPECT_EQ(f.counts.emptyCells, 2u);
+}
+
+TEST(Tessellate, SitesEquallyFarFromAWholeLine) {
+  // Any number of cells around one axis, which runs through nodes and along edges of the cage.
+  for (const int n : {3, 4, 5, 8, 13}) {
+    const auto tets =
+        families::cagedInBlock(families::boxSurface(Vec3(-1, -1, -1), Vec3(1, 1, 1), 2, 2, 2), 4);
+    std::vector<Vec3> sites;
+    for (int i = 0; i < n; ++i)
+      sites.emplace_back(0.5 * std::cos(2 * M_PI * i / n), 0.5 * std::sin(2 * M_PI * i / n), 0);
+    const Fragments f = breakAt(tets, sites);
+    EXPECT_EQ(f.pieces.size(), static_cast<std::size_t>(n));
+    expectPromises(f);
+  }
+}
+
+TEST(Tessellate, CanonicalCellsKeepEveryPromise) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const auto tets =
+        families::cagedInBlock(seed % 2 == 0 ? families::torusSurface(1, 0.35, 30, 14)
+                                             : families::sphereSurface(Vec3(1, 2, 3), 1, 30, 15),
+                               4 + static_cast<int>(seed % 4));
+    const auto f = tessellate(partitionBySites(tets, randomSites(*tets, 3 + 4 * seed, seed)),
+                              {.cells = CellMode::Canonical}, Exec{});
+    SCOPED_TRACE(seed);
+    ASSERT_TRUE(f.ok()) << f.error().text();
+    expectPromises(*f);
+  }
+}
+
+TEST(Tessellate, ConformingPiecesAreThoseOfTheCage) {
+  for (const CellMode mode : {CellMode::Exact, CellMode::Canonical}) {
+    const TetMesh u = families::uShape(1, 2, 4, 1, 0.25);
+    const auto tets = families::shared(u);
+    const auto f = tessellate(partitionBySites(tets, randomSites(*tets, 9, 6)),
+                              {.cells = mode, .surface = SurfaceMode::Conforming, .minVolume = 0}, Exec{});
+    ASSERT_TRUE(f.ok()) << f.error().text();
+    expectPromises(*f);
+    EXPECT_GE(f->pieces.size(), 6u);
+    EXPECT_NEAR(solidVolume(f->tets->surface->positions, f->tets->surface->triangles), u.quality.cageVolume, 1e-12);
+  }
+}
+
 TEST(Tessellate, OneCellIsTheUntouchedSurface) {
   const auto tets = families::cagedInBlock(families::sphereSurface(Vec3::Zero(), 1, 24, 12), 3);
   const Fragments f = breakAt(tets, {Vec3::Zero()});

@@ -1,0 +1,84 @@
+#include "bench/measured_table.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+namespace sherd::bench {
+namespace {
+
+struct Median {
+  double real = 0, processor = 0;  ///< ms
+};
+
+std::map<std::string, Median>& medians() {
+  static std::map<std::string, Median> known;
+  return known;
+}
+
+/// The console's report, which also remembers the medians.
+class Remembering : public benchmark::ConsoleReporter {
+ public:
+  Remembering() : ConsoleReporter(OO_None) {}
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs)
+      if (run.run_type == Run::RT_Aggregate && run.aggregate_name == "median")
+        medians()[run.run_name.function_name] = {run.GetAdjustedRealTime(), run.counters.at(kProcessorTime)};
+    ConsoleReporter::ReportRuns(runs);
+  }
+};
+
+}  // namespace
+
+void runMeasured() {
+  Remembering reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  benchmark::ClearRegisteredBenchmarks();
+}
+
+double medianOf(const std::string& name) { return medians()[name].real; }
+double processorMedianOf(const std::string& name) { return medians()[name].processor; }
+
+std::string number(double value) {
+  if (!std::isfinite(value)) return "";
+  if (value >= 100 || value == 0) return fmt::format("{:.0f}", value);
+  return fmt::format("{:.{}f}", value, value >= 10 ? 1 : value >= 1 ? 2 : 3);
+}
+
+std::string scientific(double value) { return fmt::format("{:.1e}", value); }
+std::string count(std::size_t value) { return fmt::format("{}", value); }
+
+void Table::write(const std::filesystem::path& csv) const {
+  std::ofstream out(csv);
+  for (const auto& row : rows_) out << fmt::format("{}\n", fmt::join(row, ","));
+}
+
+std::string Table::markdown() const {
+  std::string text;
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    text += fmt::format("| {} |\n", fmt::join(rows_[r], " | "));
+    if (r > 0) continue;
+    for (std::size_t c = 0; c < rows_[r].size(); ++c) text += "|---";
+    text += "|\n";
+  }
+  return text;
+}
+
+void writeSection(const std::filesystem::path& file, const std::string& name, const std::string& text) {
+  std::ifstream in(file);
+  std::string all(std::istreambuf_iterator<char>(in), {});
+  const std::string begin = fmt::format("<!-- begin {} -->\n", name),
+                    end = fmt::format("<!-- end {} -->\n", name);
+  const std::size_t from = all.find(begin), to = all.find(end);
+  const std::string section = begin + text + end;
+  if (from != std::string::npos && to != std::string::npos)
+    all.replace(from, to + end.size() - from, section);
+  else
+    all += section;
+  std::ofstream(file) << all;
+}
+
+}  // namespace sherd::bench
