@@ -12,7 +12,10 @@ NodeType weightsNode();
 NodeType predictDegreeNode();
 NodeType cvdNode();
 NodeType tessellateNode();
+NodeType selectPieceNode();
+NodeType convexProxiesNode();
 NodeType exportCrackSurfaceNode();
+NodeType exportProxiesNode();
 NodeType previewNode();
 NodeType contactSheetNode();
 
@@ -20,5 +23,6 @@ NodeType contactSheetNode();
 
 SHERD_NODE_PACK(sherd::loadMeshNode, sherd::tetrahedralizeNode, sherd::embedNode, sherd::simulateNode,
                 sherd::readVdbNode, sherd::weightsNode, sherd::predictDegreeNode, sherd::cvdNode,
-                sherd::tessellateNode, sherd::exportCrackSurfaceNode, sherd::previewNode,
+                sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
+                sherd::exportCrackSurfaceNode, sherd::exportProxiesNode, sherd::previewNode,
                 sherd::contactSheetNode)

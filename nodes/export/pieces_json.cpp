@@ -36,7 +36,8 @@ Json describePiece(const Fragments& f, const Piece& piece, const PieceFileNames&
   json["neighbours"] = Json::array();
   for (const auto& [neighbour, area] : contactAreas(f, piece))
     json["neighbours"].push_back({{"name", f.pieces[at(neighbour)].name}, {"contact_area", area}});
-  json["parent"] = nullptr;
+  const std::string& parent = f.tets->surface->piece;
+  json["parent"] = parent.empty() ? Json(nullptr) : Json(parent);
   json["birth_frame"] = nullptr;
   return json;
 }

@@ -57,6 +57,7 @@ OwnSurface ownSurface(const TetMesh& cage) {
     surface->triangles.push_back({vertexOf[at(f[0])], vertexOf[at(f[1])], vertexOf[at(f[2])]});
   surface->frame = cage.surface->frame;
   surface->source = cage.surface->source;
+  surface->piece = cage.surface->piece;
   auto tets = std::make_shared<TetMesh>(cage);
   tets->surface = surface;
   tets->insideFraction.assign(cage.tets.size(), 1);
@@ -121,6 +122,8 @@ Result<Fragments> tessellate(const Partition& cells, const TessellateParams& par
                                     std::max(params.minVolume * volume, params.minVolumeAbsolute),
                                     cells.material.density, exec);
   if (exec.cancelled()) return cancelledError();
+  if (!surface.piece.empty())  // names grow with depth: piece_0003_0002
+    for (Piece& piece : result.pieces) piece.name.replace(0, std::string_view("piece").size(), surface.piece);
   result.tets = tets;
   result.material = cells.material;
   result.sites = cells.siteCount();

@@ -59,7 +59,7 @@ std::vector<Gap> findGaps(std::span<const Vec3> positions, std::span<const Trian
         seen[i] = hit;
     }
   });
-  SurfacePatches patches(surface.positions, surface.triangles, search.spacing);
+  SurfacePatches patches(surface.positions, surface.triangles, search.spacing, search.touching);
   std::vector<Gap> gaps;
   for (std::size_t i = 0; i < looks.size() && !exec.cancelled(); ++i)
     if (seen[i])

@@ -18,9 +18,10 @@ struct Gap {
 };
 
 struct GapSearch {
-  double spacing;   ///< of the points looked from, and size of the patches in which ways are measured
-  double widest;    ///< wider gaps are left out
-  double farthest;  ///< ways longer than this count as infinite
+  double spacing;         ///< of the points looked from, and size of the patches in which ways are measured
+  double widest;          ///< wider gaps are left out
+  double farthest;        ///< ways longer than this count as infinite
+  bool touching = false;  ///< parts of the surface touch: ways lead through the places where they do
 };
 
 /// All gaps seen. Only surfaces that face each other count (the angle of their normals exceeds 120°): a

@@ -128,6 +128,31 @@ std::vector<std::pair<bool, int>> topologyOf(const std::vector<Shell>& shells) {
   return topology;
 }
 
+std::size_t countContacts(std::span<const Vec3> positions) {
+  std::vector<std::array<double, 3>> places;
+  places.reserve(positions.size());
+  for (const Vec3& p : positions) places.push_back({p.x(), p.y(), p.z()});
+  std::sort(places.begin(), places.end());
+  return places.size() - static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
+}
+
+bool enclosesTopology(const std::vector<std::pair<bool, int>>& got,
+                      const std::vector<std::pair<bool, int>>& wanted, std::size_t contacts) {
+  if (got == wanted) return true;
+  const auto sum = [](const std::vector<std::pair<bool, int>>& shells, bool voids) {
+    std::pair<int, int> countAndEuler{0, 0};
+    for (const auto& [isVoid, euler] : shells)
+      if (isVoid == voids) ++countAndEuler.first, countAndEuler.second += euler;
+    return countAndEuler;
+  };
+  const auto [gotBodies, gotEuler] = sum(got, false);
+  const auto [bodies, euler] = sum(wanted, false);
+  const int most = static_cast<int>(std::min<std::size_t>(contacts, 1u << 20));
+  // A contact joins two components, or is a handle: either takes 2 from the Euler characteristic.
+  return sum(got, true) == sum(wanted, true) && gotBodies >= std::max(1, bodies - most) &&
+         gotBodies <= bodies && gotEuler <= euler && gotEuler >= euler - 2 * most;
+}
+
 std::string describeTopology(const std::vector<std::pair<bool, int>>& topology) {
   int components = 0, voids = 0, handles = 0;
   for (const auto& [isVoid, euler] : topology) {

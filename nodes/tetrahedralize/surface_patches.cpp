@@ -37,6 +37,22 @@ void splitTriangle(const Triangle& t, const std::array<Index, 3>& middle, std::v
                {Triangle{a, ab, ca}, Triangle{ab, b, bc}, Triangle{ca, bc, c}, Triangle{ab, bc, ca}});
 }
 
+/// Where parts of the surface touch, each has a vertex of its own: no way at all from one to the other.
+void linkTouching(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                  const std::vector<Index>& patchOf, std::vector<std::pair<Index, Index>>& links) {
+  std::vector<std::pair<std::array<double, 3>, Index>> places;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (const Index v : triangles[t]) {
+      const Vec3& p = positions[at(v)];
+      places.push_back({{p.x(), p.y(), p.z()}, patchOf[t]});
+    }
+  std::sort(places.begin(), places.end());
+  for (std::size_t i = 0; i + 1 < places.size(); ++i)
+    if (const Index a = places[i].second, b = places[i + 1].second;
+        places[i].first == places[i + 1].first && a != b)
+      links.insert(links.end(), {{a, b}, {b, a}});
+}
+
 }  // namespace
 
 RefinedSurface refineLongEdges(std::span<const Vec3> positions, std::span<const Triangle> triangles,
@@ -67,7 +83,7 @@ RefinedSurface refineLongEdges(std::span<const Vec3> positions, std::span<const 
 }
 
 SurfacePatches::SurfacePatches(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                               double size) {
+                               double size, bool touching) {
   using Cell = std::array<int, 3>;
   std::vector<Vec3> centroid(triangles.size());
   std::vector<Cell> cell(triangles.size());
@@ -117,6 +133,7 @@ SurfacePatches::SurfacePatches(std::span<const Vec3> positions, std::span<const 
     const Index a = patchOf_[at(s)], b = patchOf_[at(t)];
     if (a != b) links.insert(links.end(), {{a, b}, {b, a}});
   }
+  if (touching) linkTouching(positions, triangles, patchOf_, links);
   std::sort(links.begin(), links.end());
   links.erase(std::unique(links.begin(), links.end()), links.end());
   links_.resize(centre_.size());

@@ -21,7 +21,9 @@ RefinedSurface refineLongEdges(std::span<const Vec3> positions, std::span<const 
 /// the centres of patches, and errs by about the size of one. Triangles should be smaller than that.
 class SurfacePatches {
  public:
-  SurfacePatches(std::span<const Vec3> positions, std::span<const Triangle> triangles, double size);
+  /// `touching`: parts of the surface meet in vertices at one place, and ways lead through there.
+  SurfacePatches(std::span<const Vec3> positions, std::span<const Triangle> triangles, double size,
+                 bool touching = false);
 
   /// Length of the way from triangle s to triangle t; infinite if there is none or it is longer than
   /// `farthest` (the same in all calls). Remembers what it found from the patch of s.

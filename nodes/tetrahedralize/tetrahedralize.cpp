@@ -20,6 +20,8 @@ constexpr double kTetShape = 0.095;  ///< volume of a typical tetrahedron in cub
 constexpr double kCountTolerance = 0.1;  ///< of the number of tetrahedra, that the search ends at
 constexpr int kSearchRuns = 4;           ///< runs of Mesh_3 for the number of tetrahedra
 constexpr int kTries = 5;                ///< further ones for enclosure, topology and gaps
+constexpr double kMoreTets = 4;          ///< times as many where none of these gave a cage
+constexpr double kHairline = 2e-3;       ///< in sizes of the object: wider gaps are kept open, or it fails
 constexpr double kPerturbBound = 12, kExudeBound = 14;  ///< degrees
 constexpr std::size_t kMostTets = 20;          ///< times the number aimed at, that gaps may ask for …
 constexpr std::size_t kAlwaysAllowed = 40000;  ///< … or this many
@@ -133,9 +135,27 @@ class CageBuilder {
         params_(params),
         exec_(exec),
         tree_(surface_.positions, surface_.triangles),
-        wanted_(topologyOf(surface_.shells)) {}
+        wanted_(topologyOf(surface_.shells)),
+        contacts_(countContacts(mesh_->positions)) {}
 
   Result<TetMesh> build() {
+    SHERD_ASSIGN(std::optional<TetMesh> cage, attempt());
+    if (!cage) {
+      // What is thin or near to another part of the surface at this resolution is less so at a higher one.
+      exec_.info("meshing again with more tetrahedra: " + problem_->what);
+      params_.tets = static_cast<int>(std::min(kMoreTets * params_.tets, kMostAskedFor));
+      params_.edgeLength /= std::cbrt(kMoreTets);
+      sizes_ = {};
+      smallGapsToo_ = false;
+      SHERD_ASSIGN(cage, attempt());
+    }
+    if (!cage) return *problem_;
+    return finish(std::move(*cage));
+  }
+
+ private:
+  /// A cage as promised, or none, and problem_ says why not.
+  Result<std::optional<TetMesh>> attempt() {
     nominal_ =
         params_.edgeLength > 0 ? params_.edgeLength / surface_.size : edgeForCount(surface_, params_.tets);
     if (const double least = edgeForCount(surface_, kMostAskedFor); nominal_ < least)
@@ -151,7 +171,7 @@ class CageBuilder {
     const auto hasTopology = [this](const Tetrahedra& tetrahedra) {
       const TetMesh cage = toMetres(tetrahedra, surface_);
       const auto shells = splitShells(cage.nodes, cage.boundary);
-      return shells.ok() && topologyOf(*shells) == wanted_;
+      return shells.ok() && enclosesTopology(topologyOf(*shells), wanted_, contacts_);
     };
     for (int tries = 0; tries < kTries; ++tries) {
       exec_.progress(0.6 + 0.06 * tries);
@@ -159,18 +179,19 @@ class CageBuilder {
       TetMesh cage = toMetres(mesh.extract(), surface_);
       SHERD_ASSIGN(bool good, verify(cage));
       if (exec_.cancelled()) return cancelledError();
-      if (good) return finish(std::move(cage));
+      if (good) return std::optional(std::move(cage));
       exec_.info("meshing again, more finely: " + problem_->what);
       SHERD_ASSIGN(mesh, meshOnce());
     }
-    return *problem_;
+    return std::optional<TetMesh>();
   }
 
- private:
   Result<void> lookForGaps() {
     const double widest = kOffsetShare * nominal_ * kLargestEdge * 4;
-    gaps_ = findGaps(surface_.positions, surface_.triangles,
-                     {.spacing = nominal_ / 3, .widest = widest, .farthest = 2 * nominal_}, exec_);
+    gaps_ = findGaps(
+        surface_.positions, surface_.triangles,
+        {.spacing = nominal_ / 3, .widest = widest, .farthest = 2 * nominal_, .touching = contacts_ > 0},
+        exec_);
     sizes_.edgeLength = nominal_;
     chooseGaps();
     if (exec_.cancelled()) return cancelledError();
@@ -182,7 +203,8 @@ class CageBuilder {
   void chooseGaps() {
     sizes_.open.clear();
     for (const Gap& gap : gaps_)
-      if (gap.detour > std::max((smallGapsToo_ ? 0.3 : 1.0) * nominal_, 1.3 * gap.width))
+      if (!(mayClose(gap) && gap.width <= closedGaps_) &&
+          gap.detour > std::max((smallGapsToo_ ? 0.3 : 1.0) * nominal_, 1.3 * gap.width))
         sizes_.open.push_back(gap);
   }
 
@@ -195,11 +217,29 @@ class CageBuilder {
     field_ = std::make_unique<CageField>(surface_, tree_, sizes_, levelSet_, exec_);
     if (exec_.cancelled()) return cancelledError();
     const std::size_t most = std::max(kAlwaysAllowed, kMostTets * static_cast<std::size_t>(aimedTets()));
-    if (const double expected = field_->expectedTets(); expected > static_cast<double>(most))
-      return tooMany(expected);
+    if (const double expected = field_->expectedTets(); expected > static_cast<double>(most)) {
+      if (!giveUpHairline()) return tooMany(expected);
+      return meshOnce();
+    }
     const VolumeToMesh volume = field_->volume();
     if (exec_.cancelled()) return cancelledError();
     return VolumeMesh::refine(volume, exec_);
+  }
+
+  /// May the gap be closed where it would take too many tetrahedra to keep it open? Hardly wider than a
+  /// crack, and the way round it no longer than two edges: distances are not known better anyway.
+  bool mayClose(const Gap& gap) const { return gap.width <= kHairline && gap.detour <= 2 * nominal_; }
+
+  /// Lets the narrowest of such gaps close, up to twice its width at a time. False where there are none.
+  bool giveUpHairline() {
+    const Gap* narrowest = nullptr;
+    for (const Gap& gap : sizes_.open)
+      if (mayClose(gap) && (narrowest == nullptr || gap.width < narrowest->width)) narrowest = &gap;
+    if (narrowest == nullptr) return false;
+    closedPlace_ = *narrowest;
+    closedGaps_ = std::max(2 * narrowest->width, 1e-6);
+    chooseGaps();
+    return true;
   }
 
   double aimedTets() const {
@@ -247,7 +287,8 @@ class CageBuilder {
   Result<bool> verify(TetMesh& cage) {
     auto shells = splitShells(cage.nodes, cage.boundary);
     if (!shells.ok()) return wantMore(failure("the cage's boundary is no manifold: " + shells.error().what));
-    if (topologyOf(*shells) != wanted_) return wantTopology(cage, topologyOf(*shells));
+    if (const auto got = topologyOf(*shells); !enclosesTopology(got, wanted_, contacts_))
+      return wantTopology(cage, got);
     std::vector<Breach> breaches =
         findBreaches(cage, mesh_->positions, mesh_->triangles, surface_.shells, exec_);
     breaches =
@@ -341,6 +382,9 @@ class CageBuilder {
     fillInsideFractions(cage, mesh_->positions, mesh_->triangles, exec_);
     linkSurface(cage, exec_);
     if (exec_.cancelled()) return cancelledError();
+    if (closedGaps_ > 0)
+      exec_.warn(gapText(closedPlace_) +
+                 " and others as narrow are closed in the tetrahedra: cracks may jump them");
     cage.quality = measureQuality(cage, mesh_->positions, mesh_->triangles);
     exec_.progress(1);
     return cage;
@@ -355,9 +399,12 @@ class CageBuilder {
   const Exec& exec_;
   SurfaceTree tree_;
   std::vector<std::pair<bool, int>> wanted_;
-  double nominal_ = 0;  ///< the edge length that the number of tetrahedra stands for without any gap
+  std::size_t contacts_;  ///< where the surface touches itself
+  double nominal_ = 0;    ///< the edge length that the number of tetrahedra stands for without any gap
   std::vector<Gap> gaps_;
   bool smallGapsToo_ = false;
+  double closedGaps_ = 0;  ///< gaps up to this width that may be closed are
+  Gap closedPlace_{};      ///< one of them
   CageSizes sizes_;
   std::shared_ptr<const LevelSet> levelSet_;
   std::unique_ptr<CageField> field_;

@@ -14,7 +14,7 @@ void hashValue(Hasher& hasher, const TriMesh& mesh) {
   for (const auto& set : mesh.colorSets) hasher.add(set.name).add(set.rgba);
   for (const auto& name : mesh.materials) hasher.add(name);
   hashBits(hasher, mesh.frame);
-  hasher.add(mesh.source);
+  hasher.add(mesh.source).add(mesh.piece);
 }
 
 std::size_t byteSize(const TriMesh& mesh) {
@@ -41,6 +41,7 @@ void saveValue(ArchiveWriter& to, const TriMesh& mesh) {
   to.array(mesh.materialOf);
   putBits(to, mesh.frame);
   to.text(mesh.source);
+  to.text(mesh.piece);
 }
 
 namespace {
@@ -76,6 +77,7 @@ std::optional<TriMesh> loadValue(ArchiveReader& from, std::type_identity<TriMesh
   from.array(mesh.materialOf);
   getBits(from, mesh.frame);
   mesh.source = from.text();
+  mesh.piece = from.text();
   if (!from.ok() || !isSound(mesh)) loaded.reset();
   return loaded;
 }

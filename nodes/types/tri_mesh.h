@@ -31,7 +31,7 @@ struct FileFrame {
 /// Corner c of triangle t is entry 3 t + c of every per-corner array.
 struct TriMesh {
   static constexpr const char* typeName = "Mesh";
-  static constexpr int archiveVersion = 1;
+  static constexpr int archiveVersion = 2;
 
   struct UvSet {
     std::string name;
@@ -51,6 +51,7 @@ struct TriMesh {
   std::vector<Index> materialOf;       ///< per triangle, index into materials; empty if there are none
   FileFrame frame;                     ///< of the file that it came from
   std::string source;                  ///< that file's name, for messages
+  std::string piece;  ///< "piece_0003": the piece of an earlier fracture that this is; empty for a whole body
 
   std::size_t cornerCount() const { return 3 * triangles.size(); }
 };

@@ -34,9 +34,20 @@ const Names kStepLayers{"geometry", "pictures", "types", "base"};
 /// Steps that may include the contract of another, <step>/<step>.h, and of which. Acyclic: each only names
 /// steps that stand above it.
 const std::vector<std::pair<std::string, Names>> kContracts{
-    {"load_mesh", {}},           {"tetrahedralize", {}}, {"embed", {}},   {"rigid", {}},
-    {"simulate", {"rigid"}},     {"beta", {}},           {"weights", {}}, {"cvd", {}},
-    {"predict_degree", {"cvd"}}, {"tessellate", {}},     {"export", {}},  {"preview", {}},
+    {"load_mesh", {}},
+    {"tetrahedralize", {}},
+    {"embed", {}},
+    {"rigid", {}},
+    {"simulate", {"rigid"}},
+    {"beta", {}},
+    {"weights", {}},
+    {"cvd", {}},
+    {"predict_degree", {"cvd"}},
+    {"tessellate", {}},
+    {"select_piece", {}},
+    {"convex_proxies", {}},
+    {"export", {}},
+    {"preview", {}},
     {"contact_sheet", {}},
 };
 

@@ -48,6 +48,11 @@ Fragments full() {
   return made::fragments();
 }
 
+template <>
+Proxies full() {
+  return made::proxies();
+}
+
 template <class T>
 class Archive : public testing::Test {
  protected:
@@ -65,7 +70,7 @@ class Archive : public testing::Test {
 };
 
 using Types = testing::Types<TriMesh, TetMesh, Impact, EnergyField, WeightField, Embedding, Sites, Partition,
-                             Fragments>;
+                             Fragments, Proxies>;
 TYPED_TEST_SUITE(Archive, Types);
 
 TYPED_TEST(Archive, AnEmptyValueComesBack) { this->expectRoundTrip(TypeParam()); }
@@ -239,6 +244,12 @@ TEST(ArchiveChecks, Fragments) {
   EXPECT_FALSE(accepted<Fragments>([](Fragments& f) { f.pieces[1].crackNeighbour[0] = 2; }));
   EXPECT_FALSE(accepted<Fragments>([](Fragments& f) { f.pieces[1].crackNeighbour.clear(); }));
   EXPECT_FALSE(accepted<Fragments>([](Fragments& f) { f.tets = nullptr; }));
+}
+
+TEST(ArchiveChecks, Proxies) {
+  EXPECT_FALSE(accepted<Proxies>([](Proxies& p) { p.pieces[0].hulls[0].triangles[0][2] = 3; }));
+  EXPECT_FALSE(accepted<Proxies>([](Proxies& p) { p.pieces[1].hulls[0].triangles[1][0] = -1; }));
+  EXPECT_FALSE(accepted<Proxies>([](Proxies& p) { p.frame.up = static_cast<FileFrame::Up>(2); }));
 }
 
 }  // namespace

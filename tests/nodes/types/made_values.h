@@ -10,6 +10,7 @@
 #include "types/fields.h"
 #include "types/fragments.h"
 #include "types/partition.h"
+#include "types/proxies.h"
 
 namespace sherd::made {
 
@@ -30,6 +31,7 @@ inline TriMesh triMesh() {
     mesh.materialOf.push_back(static_cast<Index>(t % 3));
   mesh.frame = {0.01, FileFrame::Up::Z};
   mesh.source = "a b/ü.obj";
+  mesh.piece = "piece_0003_0002";
   return mesh;
 }
 
@@ -136,6 +138,28 @@ inline Fragments fragments() {
   f.degreeGiven = true;
   f.counts = {1, 2, 3, 4, 5, 6, 7};
   return f;
+}
+
+inline PieceProxy pieceProxy(const char* name) {
+  PieceProxy p;
+  p.name = name;
+  p.hulls = {{{Vec3(0, 0, 0), Vec3(1, 0, -0.0), Vec3(0, kSmallest, 0)}, {{0, 1, 2}, {0, 2, 1}}, -0.0},
+             {{Vec3(kNan, 0, 0)}, {}, 3}};
+  p.pieceVolume = 0.5;
+  p.volume = 0.75;
+  p.error = kSmallest;
+  p.overlap = -0.0;
+  p.mass = kLargest;
+  p.centreOfMass = Vec3(1, -0.0, 2);
+  p.inertia << 1, 2, 3, 4, 5, 6, 7, 8, -0.0;
+  return p;
+}
+
+inline Proxies proxies() {
+  Proxies p;
+  p.pieces = {pieceProxy("piece_0001"), pieceProxy("piece_0002")};
+  p.frame = {0.01, FileFrame::Up::Z};
+  return p;
 }
 
 }  // namespace sherd::made

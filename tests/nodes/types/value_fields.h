@@ -15,6 +15,7 @@
 #include "types/fields.h"
 #include "types/fragments.h"
 #include "types/partition.h"
+#include "types/proxies.h"
 #include "types/tet_mesh.h"
 #include "types/tri_mesh.h"
 
@@ -36,16 +37,16 @@ auto of(Maybe<TriMesh::ColorSet> auto& v) {
   return std::tie(a, b);
 }
 auto of(Maybe<TriMesh> auto& v) {
-  auto& [a, b, c, d, e, f, g, h, i] = v;
-  return std::tie(a, b, c, d, e, f, g, h, i);
+  auto& [a, b, c, d, e, f, g, h, i, j] = v;
+  return std::tie(a, b, c, d, e, f, g, h, i, j);
 }
 auto of(Maybe<TetQuality> auto& v) {
   auto& [a, b, c, d, e] = v;
   return std::tie(a, b, c, d, e);
 }
 auto of(Maybe<TetMesh> auto& v) {
-  auto& [a, b, c, d, e, f, g, h, i] = v;
-  return std::tie(a, b, c, d, e, f, g, h, i);
+  auto& [a, b, c, d, e, f, g, h, i, j, k] = v;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
 auto of(Maybe<Material> auto& v) {
   auto& [a, b, c] = v;
@@ -94,6 +95,19 @@ auto of(Maybe<FractureCounts> auto& v) {
 auto of(Maybe<Fragments> auto& v) {
   auto& [a, b, c, d, e, f, g, h, i, j] = v;
   return std::tie(a, b, c, d, e, f, g, h, i, j);
+}
+
+auto of(Maybe<ConvexHull> auto& v) {
+  auto& [a, b, c] = v;
+  return std::tie(a, b, c);
+}
+auto of(Maybe<PieceProxy> auto& v) {
+  auto& [a, b, c, d, e, f, g, h, i] = v;
+  return std::tie(a, b, c, d, e, f, g, h, i);
+}
+auto of(Maybe<Proxies> auto& v) {
+  auto& [a, b] = v;
+  return std::tie(a, b);
 }
 
 template <class T>
