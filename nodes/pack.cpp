@@ -13,6 +13,7 @@ NodeType predictDegreeNode();
 NodeType cvdNode();
 NodeType tessellateNode();
 NodeType exportCrackSurfaceNode();
+NodeType exportPiecesNode();
 NodeType previewNode();
 NodeType contactSheetNode();
 
@@ -20,5 +21,5 @@ NodeType contactSheetNode();
 
 SHERD_NODE_PACK(sherd::loadMeshNode, sherd::tetrahedralizeNode, sherd::embedNode, sherd::simulateNode,
                 sherd::readVdbNode, sherd::weightsNode, sherd::predictDegreeNode, sherd::cvdNode,
-                sherd::tessellateNode, sherd::exportCrackSurfaceNode, sherd::previewNode,
-                sherd::contactSheetNode)
+                sherd::tessellateNode, sherd::exportCrackSurfaceNode, sherd::exportPiecesNode,
+                sherd::previewNode, sherd::contactSheetNode)

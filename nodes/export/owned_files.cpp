@@ -50,7 +50,7 @@ Result<bool> removeFile(const std::string& path) {
 }  // namespace
 
 bool OwnedFiles::canBeOurs(const std::string& name) {
-  if (name == "pieces.json") return true;
+  if (name == "pieces.json" || name == "pieces.glb") return true;
   const std::string prefix = "piece_";
   if (name.compare(0, prefix.size(), prefix) != 0) return false;
   std::size_t i = prefix.size();
@@ -62,11 +62,13 @@ bool OwnedFiles::canBeOurs(const std::string& name) {
 
 std::string OwnedFiles::path(const std::string& name) const { return (fs::path(directory_) / name).string(); }
 
-Result<OwnedFiles> OwnedFiles::open(std::string directory, std::vector<std::string> names) {
+Result<OwnedFiles> OwnedFiles::open(std::string directory, std::vector<std::string> names,
+                                    std::string manifest) {
   OwnedFiles files;
+  files.manifest_ = std::move(manifest);
   files.directory_ = std::move(directory);
   files.names_ = std::move(names);
-  SHERD_ASSIGN(files.listed_, readManifest(files.path(manifestName)));
+  SHERD_ASSIGN(files.listed_, readManifest(files.path(files.manifest_)));
   for (const std::string& name : files.names_)
     if (!files.listed_.contains(name) && present(files.path(name)))
       return failure(fmt::format("'{}' exists already and is not of an earlier export into this directory",
@@ -94,7 +96,7 @@ Result<std::size_t> OwnedFiles::commit(const std::vector<Digest>& digests) const
   for (std::size_t i = 0; i < names_.size(); ++i) now[names_[i]] = digests[i].hex();
   std::size_t removed = 0;
   // Partial files are what a killed run was writing just then.
-  SHERD_CHECK(removeFile(partialName(path(manifestName))));
+  SHERD_CHECK(removeFile(partialName(path(manifest_))));
   for (const auto& [name, digest] : listed_) {
     SHERD_CHECK(removeFile(partialName(path(name))));
     if (now.contains(name)) continue;
@@ -113,7 +115,7 @@ Result<void> OwnedFiles::write(const Entries& entries) const {
       "replaces "
       "or removes them and touches no others.";
   json["files"] = entries;
-  const auto written = writeFileAtomically(path(manifestName), json.dump(1) + "\n");
+  const auto written = writeFileAtomically(path(manifest_), json.dump(1) + "\n");
   return written.ok() ? Result<void>{} : written.error();
 }
 

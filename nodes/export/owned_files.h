@@ -20,9 +20,13 @@ namespace sherd {
 class OwnedFiles {
  public:
   static constexpr const char* manifestName = "sherd_manifest.json";
+  static constexpr const char* piecesManifest = "sherd_pieces_manifest.json";
 
-  /// `directory` exists; `names` are what is going to be written into it (all of them canBeOurs).
-  static Result<OwnedFiles> open(std::string directory, std::vector<std::string> names);
+  /// `directory` exists; `names` are what is going to be written into it (all of them canBeOurs). Exporters
+  /// that may work in the same directory at the same time have manifests of different names, and files of
+  /// different names.
+  static Result<OwnedFiles> open(std::string directory, std::vector<std::string> names,
+                                 std::string manifest = manifestName);
 
   Result<void> claim() const;
   /// Removes the file of that name, one of those given to open(), if it is there. After claim().
@@ -38,7 +42,7 @@ class OwnedFiles {
  private:
   Result<void> write(const std::map<std::string, std::string>& entries) const;
 
-  std::string directory_;
+  std::string directory_, manifest_;
   std::vector<std::string> names_;
   std::map<std::string, std::string> listed_;  ///< the last manifest: name, digest
 };

@@ -219,6 +219,9 @@ class Assembler {
       if (other == ownerOf(f)) return;  // within one merged solid
       piece.crack.push_back(face.corners);
       piece.crackNeighbour.push_back(pieceOf.at(other));
+      const auto& [corners, front, back] = m_.sheet[at(face.sheet)];
+      const auto next = static_cast<Index>(sheetNumber_.size());
+      piece.crackSheet.push_back(sheetNumber_.try_emplace(std::minmax(front, back), next).first->second);
       return;
     }
     const SkinTriangle& skin = m_.skin[at(face.skin)];
@@ -272,8 +275,9 @@ class Assembler {
   std::vector<Face> faces_;
   std::vector<Solid> solids_;
   std::vector<Index> solidOfFace_;
-  std::vector<std::array<Index, 2>> sheetSides_;  ///< per sheet triangle: its two faces
-  std::vector<Index> joined_;                     ///< per solid: the one that it joined, or itself
+  std::vector<std::array<Index, 2>> sheetSides_;          ///< per sheet triangle: its two faces
+  std::vector<Index> joined_;                             ///< per solid: the one that it joined, or itself
+  std::map<std::pair<Index, Index>, Index> sheetNumber_;  ///< by the two cells
   Fragments out_;
 };
 
