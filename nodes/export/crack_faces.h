@@ -24,7 +24,7 @@ inline constexpr const char* kCrackNormalsHelp =
     "normals of the crack faces: smooth within each sheet between two cells, with creases between sheets, or "
     "flat";
 inline constexpr const char* kTextureDensityHelp =
-    "UV units per metre on crack faces: 1 repeats a tiling texture every metre, 4 every 25 cm";
+    "how often a tiling texture repeats per metre of crack face (UV units): at 4, every 25 cm";
 
 /// Attributes of all crack faces in the program's axes, with the precision of a float (made numbers need no
 /// more digits; files are smaller for it). Errors as those of crackAttributes(), and `texture_density` out of

@@ -14,8 +14,9 @@ struct PieceFileNames {
   std::string crack;  ///< empty where the piece has no crack face
 };
 
-/// All quantities are in SI units and the program's axes (y up, right-handed), which the file says; `length`
-/// tells how the coordinates in the piece files relate to that. `files` has one entry per piece.
+/// All quantities are in SI units and the program's axes (y up, right-handed), which the file says;
+/// `files_frame` tells how the coordinates in the piece files relate to that. `files` has one entry per
+/// piece.
 std::string piecesJson(const Fragments& fragments, const std::vector<Bond>& bonds,
                        const std::vector<PieceFileNames>& files);
 

@@ -197,7 +197,9 @@ Result<CrackAttributes> crackAttributes(const Fragments& f, const Exec& exec) {
   parallelFor(exec, contacts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Sheet sheet(f, contacts[k]);
+      if (exec.cancelled()) return;
       giveNormals(f, contacts[k], smoothNormals(f, sheet), normals);
+      if (exec.cancelled()) return;
       islands[k] = layOut(f, sheet, exec);
     }
   });
