@@ -1,7 +1,8 @@
 # Opens an exported fracture in Blender and measures what has arrived.
 #   blender --background --factory-startup --python-exit-code 1 --python pieces_in_blender.py -- SOURCE.obj DIRECTORY
 # The directory holds pieces.glb, pieces.json and the OBJ files of the same pieces, and ply/ the PLY files.
-# Lengths in metres. Blender's z points up: glTF's and OBJ's (x, y, z) arrive as (x, -z, y).
+# Lengths in metres. Blender's z points up: glTF's (x, y, z) arrive as (x, -z, y), and so do OBJ's, unless told
+# otherwise. The files of single pieces are in the source file's own unit and axes, which pieces.json tells.
 import json
 import os
 import sys
@@ -35,6 +36,15 @@ def expect_near(found, wanted, tolerance, what):
 def turned(vectors):
     x, y, z = np.asarray(vectors, float).T
     return np.stack([x, -z, y], axis=-1)
+
+
+def directions_in_world(vectors):
+    """From the axes of the piece files to where the GLB file puts them in Blender."""
+    return turned(vectors) if FRAME["up"] == "y" else np.asarray(vectors, float)
+
+
+def in_world(points):
+    return FRAME["metres_per_unit"] * directions_in_world(points)
 
 
 class Obj:
@@ -112,19 +122,20 @@ def clear():
     bpy.ops.wm.read_factory_settings(use_empty=True)
 
 
-def check_attributes(name, found, obj):
+def check_attributes(name, found, obj, place=turned, direct=turned):
     """Positions, UVs and normals of each material against the piece's OBJ file, which lists them in that order."""
+    size = SIZE if place is in_world else SIZE / FRAME["metres_per_unit"]
     for material in np.unique(obj.materials):
         here, there = found.materials == material, obj.materials == material
         expect(here.sum() == there.sum(), f"{name}: {here.sum()} triangles of {material}, not {there.sum()}")
         if here.sum() != there.sum():
             continue
         what = f"{name}, {material}"
-        expect_near(found.positions[here], turned(obj.positions[there].reshape(-1, 3)).reshape(-1, 3, 3),
-                    1e-6 * SIZE, f"{what}: positions")
+        expect_near(found.positions[here], place(obj.positions[there].reshape(-1, 3)).reshape(-1, 3, 3),
+                    1e-6 * size, f"{what}: positions")
         expect_near(found.uvs[0][here], obj.uvs[there], 1e-6, f"{what}: UVs")
         # Blender keeps normals as two angles of 16 bits, about others of its own.
-        expect_near(found.normals[here], turned(obj.normals[there].reshape(-1, 3)).reshape(-1, 3, 3), 5e-3,
+        expect_near(found.normals[here], direct(obj.normals[there].reshape(-1, 3)).reshape(-1, 3, 3), 5e-3,
                     f"{what}: normals")
 
 
@@ -136,7 +147,9 @@ def check_density(name, triangles):
     length = np.linalg.norm(a, axis=1)
     along = np.einsum("ij,ij->i", a, b) / length
     height = np.sqrt(np.maximum(0, (b * b).sum(1) - along**2))
-    firm = height > 1e-4 * SIZE  # floats don't tell the shape of thinner ones
+    # Floats don't tell the shape of thinner ones; near 1, where glTF's v begins, their steps are 6e-8.
+    longest = np.max([length, np.linalg.norm(b, axis=1), np.linalg.norm(b - a, axis=1)], axis=0)
+    firm = length * height > max(1e-4 * SIZE, 3e-5) * longest
     expect(firm.any(), f"{name}: no crack triangle to measure")
     plane = np.zeros((firm.sum(), 2, 2))
     plane[:, 0, 0], plane[:, 0, 1], plane[:, 1, 1] = length[firm], along[firm], height[firm]
@@ -146,7 +159,7 @@ def check_density(name, triangles):
     expect(scales.max() < 1.005, f"{name}: UVs are stretched to {scales.max():.4f}")
 
 
-def check_piece(piece, index):
+def check_piece(piece):
     name = piece["name"]
     thing = bpy.data.objects.get(name)
     if thing is None or thing.type != "MESH":
@@ -164,7 +177,7 @@ def check_piece(piece, index):
     expect(set(triangles.materials) == {m for part in parts for m in part.materials}, f"{name}: materials")
     expect(len(triangles.uvs) == 1, f"{name}: {len(triangles.uvs)} UV layers")
     for part in parts:
-        check_attributes(name, triangles, part)
+        check_attributes(name, triangles, part, in_world, directions_in_world)
     check_density(name, triangles)
     for key in ("mass", "volume"):
         expect(thing.get(key) == piece[key], f"{name}: property {key}")
@@ -191,11 +204,11 @@ def check_glb(pieces):
     expect({o.name for o in bpy.data.objects} == {p["name"] for p in pieces}, "names of objects")
     expect({m.name for m in bpy.data.materials} >= {"cap", "stem", "inside"}, "names of materials")
     expect(not any(m.name.startswith("outside") for m in bpy.data.materials), "the artist's materials are there")
-    found = [check_piece(piece, i) for i, piece in enumerate(pieces)]
+    found = [check_piece(piece) for piece in pieces]
     if None in found:
         return
     everything = np.concatenate([t.positions.reshape(-1, 3) for t in found])
-    source = turned(SOURCE_POSITIONS)
+    source = in_world(SOURCE_POSITIONS)
     expect_near(everything.min(0), source.min(0), 1e-6 * SIZE, "bounding box, low")
     expect_near(everything.max(0), source.max(0), 1e-6 * SIZE, "bounding box, high")
     check_twins(found)
@@ -224,16 +237,18 @@ def check_ply(piece):
         bpy.ops.import_mesh.ply(filepath=f"{DIRECTORY}/ply/{name}{suffix}.ply")
         found = Triangles(bpy.data.objects[f"{name}{suffix}"])
         expect(len(found.uvs) == 1, f"{name}{suffix}.ply: UV layers")
-        there = np.concatenate([found.positions / SIZE, found.uvs[0]], axis=-1)
-        here = np.concatenate([part.positions / SIZE, part.uvs], axis=-1)
+        size = SIZE / FRAME["metres_per_unit"]
+        there = np.concatenate([found.positions / size, found.uvs[0]], axis=-1)
+        here = np.concatenate([part.positions / size, part.uvs], axis=-1)
         # The importer may begin a triangle at another corner.
         errors = [np.abs(np.roll(there, turn, axis=1) - here).max((1, 2)) for turn in range(3)]
         expect_near(np.min(errors, axis=0), 0, 1e-6, f"{name}{suffix}.ply: positions and UVs")
 
 
 SOURCE_POSITIONS = np.array([line.split()[1:4] for line in open(SOURCE) if line.startswith("v ")], float)
-SIZE = np.linalg.norm(SOURCE_POSITIONS.max(0) - SOURCE_POSITIONS.min(0))
-PIECES = json.load(open(f"{DIRECTORY}/pieces.json"))["pieces"]
+DESCRIPTION = json.load(open(f"{DIRECTORY}/pieces.json"))
+PIECES, FRAME = DESCRIPTION["pieces"], DESCRIPTION["files_frame"]
+SIZE = np.linalg.norm(SOURCE_POSITIONS.max(0) - SOURCE_POSITIONS.min(0)) * FRAME["metres_per_unit"]
 expect(len(PIECES) > 5, "too few pieces")
 check_glb(PIECES)
 for piece_ in PIECES[:3] + PIECES[-1:]:

@@ -7,10 +7,11 @@
 namespace sherd {
 namespace {
 
-TEST(SlowBlender, OpensThePieces) {
+/// Breaks a model that is read by these parameters of LoadMesh, and opens what was exported.
+void expectThatBlenderOpens(const std::string& reading) {
   const ScratchDirectory scratch;
   const ProgramRun run = runProgram("run '" SHERD_SOURCE_DIR "/tests/blender/fracture.json' --var out='" +
-                                    scratch.file("out") + "'");
+                                    scratch.file("out") + "'" + reading);
   ASSERT_EQ(run.exitCode, 0) << run.output;
   const std::string command =
       "HOME='" + scratch.file("home") +
@@ -26,6 +27,12 @@ TEST(SlowBlender, OpensThePieces) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0)
       << said << "\n(Blender is installed by tests/run --all.)";
   EXPECT_NE(said.find(" 0 faults"), std::string::npos) << said;
+}
+
+TEST(SlowBlender, OpensPiecesInMetresWithYUp) { expectThatBlenderOpens(""); }
+
+TEST(SlowBlender, OpensPiecesOfAFileInDecimetresWithZUp) {
+  expectThatBlenderOpens(" --set mesh.unit=0.1 --set mesh.up=z");
 }
 
 }  // namespace
