@@ -15,6 +15,7 @@ NodeType tessellateNode();
 NodeType selectPieceNode();
 NodeType convexProxiesNode();
 NodeType exportCrackSurfaceNode();
+NodeType exportPiecesNode();
 NodeType exportProxiesNode();
 NodeType previewNode();
 NodeType contactSheetNode();
@@ -24,5 +25,5 @@ NodeType contactSheetNode();
 SHERD_NODE_PACK(sherd::loadMeshNode, sherd::tetrahedralizeNode, sherd::embedNode, sherd::simulateNode,
                 sherd::readVdbNode, sherd::weightsNode, sherd::predictDegreeNode, sherd::cvdNode,
                 sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
-                sherd::exportCrackSurfaceNode, sherd::exportProxiesNode, sherd::previewNode,
-                sherd::contactSheetNode)
+                sherd::exportCrackSurfaceNode, sherd::exportPiecesNode, sherd::exportProxiesNode,
+                sherd::previewNode, sherd::contactSheetNode)
