@@ -1,6 +1,7 @@
 // What a result depends on, as digests.
 #pragma once
 
+#include <map>
 #include <mutex>
 #include <span>
 #include <string>
@@ -34,6 +35,10 @@ Result<Digest> digestOfFile(const std::string& path);
 /// The node's recipe with the content and name (readers go by its ending) of the files that `params` name.
 /// The Error's port is the parameter.
 Result<Digest> recipeWithFiles(const Graph::Node& node, const ParamValues& params, FileDigests& files);
+
+/// Files whose names came over wires, by parameter.
+using WiredFiles = std::map<std::string, std::string>;
+WiredFiles wiredFilesOf(const Graph::Node& node, const ParamValues& params);
 
 /// Something that came over a wire, as far as a key is concerned.
 struct KeyInput {

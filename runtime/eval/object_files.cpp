@@ -11,6 +11,8 @@
 #include <cstring>
 #include <ctime>
 
+#include "eval/worth.h"
+
 namespace sherd::store {
 namespace {
 
@@ -179,14 +181,13 @@ std::uint64_t ObjectFiles::evict(std::uint64_t mostBytes) {
   for (const ObjectFile& file : files) left += file.bytes;
   if (left <= mostBytes) return 0;
   struct Candidate {
-    double worth;  ///< log2 of the time to make it again per byte, less the half-lives since its use
+    double worth;
     const ObjectFile* file;
   };
   std::vector<Candidate> candidates;
   candidates.reserve(files.size());
   for (const ObjectFile& file : files) {
-    const double density = (costOf(file.path) + 1e-3) / static_cast<double>(file.bytes + 1);
-    candidates.push_back({std::log2(density) - file.unused / kHalfLife, &file});
+    candidates.push_back({worth(costOf(file.path), file.bytes, file.unused), &file});
   }
   std::sort(candidates.begin(), candidates.end(),
             [](const Candidate& a, const Candidate& b) { return a.worth < b.worth; });
