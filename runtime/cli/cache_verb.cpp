@@ -16,7 +16,7 @@ const std::vector<std::string> kActions{"stat", "gc", "verify", "clear"};
 
 int refuse(const Error& error, Console& console, ExitCode code) {
   Diagnostics diagnostics;
-  diagnostics.add({}, "", error);
+  diagnostics.add({}, error.port, error);
   printDiagnostics(diagnostics, console.err);
   return code;
 }

@@ -110,7 +110,7 @@ int planVerb(const PlanOptions& options, const Registry& registry, const Environ
     if (opened.ok())
       store = std::move(opened).value();
     else
-      diagnostics.add({}, "", opened.error());
+      diagnostics.add({}, opened.error().port, opened.error());
   }
   if (!diagnostics.empty()) {
     printDiagnostics(diagnostics, console.err);
