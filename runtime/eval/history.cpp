@@ -52,8 +52,8 @@ PastNode describe(const Graph& graph, int i, const std::vector<std::vector<Diges
   for (std::size_t p = 0; p < type.params.size(); ++p) {
     const ParamInfo& info = type.params[p];
     if (wired[p]) {
-      if (const auto file = wiredFiles.find(info.name); file != wiredFiles.end())
-        addFile(info.name, file->second);
+      for (const auto& [param, path] : wiredFiles)
+        if (param == info.name) addFile(param, path);
       continue;
     }
     const ParamValue& value = node.params.at(info.name);

@@ -74,7 +74,7 @@ WiredFiles wiredFilesOf(const Graph::Node& node, const ParamValues& params) {
     const ParamInfo& info = node.type->params[static_cast<std::size_t>(wire.to)];
     const std::string* path =
         info.kind == ParamKind::InputFile ? std::get_if<std::string>(&params.at(info.name)) : nullptr;
-    if (path != nullptr && !path->empty()) files[info.name] = *path;
+    if (path != nullptr && !path->empty()) files.emplace_back(info.name, *path);
   }
   return files;
 }

@@ -1,11 +1,12 @@
 // What a result depends on, as digests.
 #pragma once
 
-#include <map>
 #include <mutex>
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "base/hash.h"
 #include "base/result.h"
@@ -36,8 +37,8 @@ Result<Digest> digestOfFile(const std::string& path);
 /// The Error's port is the parameter.
 Result<Digest> recipeWithFiles(const Graph::Node& node, const ParamValues& params, FileDigests& files);
 
-/// Files whose names came over wires, by parameter.
-using WiredFiles = std::map<std::string, std::string>;
+/// Parameters whose names of files came over wires, with these names.
+using WiredFiles = std::vector<std::pair<std::string, std::string>>;
 WiredFiles wiredFilesOf(const Graph::Node& node, const ParamValues& params);
 
 /// Something that came over a wire, as far as a key is concerned.

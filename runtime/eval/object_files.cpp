@@ -191,13 +191,15 @@ std::uint64_t ObjectFiles::evict(std::uint64_t mostBytes) {
   }
   std::sort(candidates.begin(), candidates.end(),
             [](const Candidate& a, const Candidate& b) { return a.worth < b.worth; });
-  for (const auto& [worth, file] : candidates) {
-    if (left <= mostBytes) break;
-    if (::unlink(file->path.c_str()) == 0)
-      freed += file->bytes;
-    else if (errno != ENOENT)
-      continue;
-    left -= file->bytes;
+  std::size_t last = 0;
+  for (; last < candidates.size() && left > mostBytes; ++last) left -= candidates[last].file->bytes;
+  // The last of them may have been far larger than what was missing: what fits in its place stays.
+  for (; last > 0; --last) {
+    const ObjectFile& file = *candidates[last - 1].file;
+    if (left + file.bytes <= mostBytes)
+      left += file.bytes;
+    else if (::unlink(file.path.c_str()) == 0)
+      freed += file.bytes;
   }
   return freed;
 }
