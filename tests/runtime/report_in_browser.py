@@ -152,7 +152,7 @@ def look_at_folded(page):
     page.check("Too much for one page: " in page.browser.find_element(By.TAG_NAME, "header").text,
                "the summary doesn't say that something is left out")
     page.click("a")
-    page.expect_details("in frame 777", "5000 ms", "50000 frames and wedges", " more are not shown: too much for one page")
+    page.expect_details("in frame 777", "5000 ms", "50000 FRAMES AND WEDGES", " more are not shown: too much for one page")
 
 
 def no_overlaps(page):
