@@ -102,12 +102,24 @@ int writeAll(const Descriptor& file, std::string_view content) {
   return twin.number() >= 0 && twin.close() ? 0 : errno;
 }
 
+/// Gives the file those that the one at `path` has, if there is one. 0, or the error number.
+int takePermissions(const Descriptor& file, const std::string& path) {
+  constexpr mode_t kPermissions = 0777;
+  struct stat old {
+  }, now{};
+  if (::lstat(path.c_str(), &old) != 0 || !S_ISREG(old.st_mode)) return 0;
+  if (::fstat(file.number(), &now) != 0) return errno;
+  if (((old.st_mode ^ now.st_mode) & kPermissions) == 0) return 0;  // all there is where files have none
+  return ::fchmod(file.number(), old.st_mode & kPermissions) == 0 ? 0 : errno;
+}
+
 /// 0, EEXIST where the name was not to be had, or another error number.
 int writeAs(const std::string& partial, const std::string& path, std::string_view content) {
   const PartialFile known(partial);
   const Descriptor file = makeFile(partial);
   if (file.number() < 0) return errno;
   int error = lockNew(file) ? writeAll(file, content) : EEXIST;
+  if (error == 0) error = takePermissions(file, path);
   if (error == 0 && ::rename(partial.c_str(), path.c_str()) != 0) error = errno;
   if (error != 0) ::unlink(partial.c_str());
   return error;

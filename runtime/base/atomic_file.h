@@ -17,10 +17,10 @@ enum class FileChange {
 bool fileHolds(const std::string& path, std::string_view content);
 
 /// Makes the file `path` hold `content`: written beside it under a name of its own (partial_file.h), then
-/// renamed, so that of several processes that do so at once one has its way. On failure the old file is as it
-/// was and nothing else is left; a process that is killed leaves at most the half-written one, which
-/// removeAbandoned() removes. The error names the file and what the system said (no space, no permission, a
-/// directory in the way).
+/// renamed, so that of several processes that do so at once one has its way. A file that was there passes on
+/// its permissions. On failure it is as it was and nothing else is left; a process that is killed leaves at
+/// most the half-written one, which removeAbandoned() removes. The error names the file and what the system
+/// said (no space, no permission, a directory in the way).
 Result<FileChange> writeFileAtomically(const std::string& path, std::string_view content);
 
 /// Creates `directory` and those above it where they are missing. The error says what is in the way.

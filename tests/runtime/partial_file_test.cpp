@@ -88,6 +88,16 @@ TEST_F(PartialFiles, SaysWhatCannotBeRemoved) {
   EXPECT_NE(removed.error().what.find("cannot remove '" + left + "'"), std::string::npos);
 }
 
+TEST_F(PartialFiles, PermissionsOfAFileStayAsTheyAre) {
+  const std::string target = path("private.json");
+  std::ofstream(target) << "old";
+  for (const fs::perms perms : {fs::perms::owner_read | fs::perms::owner_write, fs::perms::owner_read}) {
+    fs::permissions(target, perms);
+    EXPECT_TRUE(writeFileAtomically(target, "new " + std::to_string(static_cast<int>(perms))).ok());
+    EXPECT_EQ(fs::status(target).permissions(), perms);
+  }
+}
+
 TEST_F(PartialFiles, ManyThreadsWriteOneFileWhileOthersCleanUp) {
   const std::string target = path("file");
   std::vector<std::thread> threads;
