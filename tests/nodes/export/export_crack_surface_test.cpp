@@ -364,7 +364,7 @@ TEST_F(Export, KilledRunIsCleanedUp) {
   manifest["files"]["piece_0007_surface.obj"] = "";
   spill(out("sherd_manifest.json"), manifest.dump());
   spill(out("piece_0006_surface.obj"), "v 0 0 0");
-  spill(out("piece_0007_surface.obj.partial"), "v 0");
+  spill(out("piece_0007_surface.obj.0123456789abcdef.partial"), "v 0");
   ASSERT_TRUE(run(test::slicedBox(2)).ok());
   EXPECT_EQ(namesIn(params.directory).size(), 2u * 2 + 2);
 }
