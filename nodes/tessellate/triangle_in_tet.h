@@ -69,6 +69,7 @@ class TriangleInTet {
   static constexpr int kSheet = -1;  ///< the function g_front − g_back; from 0 on an edge line's
 
   Approx value(int function, std::size_t corner) const;
+  long double wideValue(int function, std::size_t corner) const;
   AffineFunction affine(int function) const;
   int determinantSign(std::span<const std::size_t> corners, std::span<const int> functions) const;
   int signAtEnd(const SegmentEnd& end, int function) const;
