@@ -44,8 +44,9 @@ struct Placed {
   int column = 0, gap = 0;
 };
 
-/// Whether somebody lined these up: most are in one column, one of them at least by more than the usual gap.
-bool areLinedUp(const std::vector<Placed>& places, int usualGap) {
+/// The column that these were lined up in: that of most of them where one is there by more than the usual
+/// gap, else that of all. Nothing where there is none.
+std::optional<int> columnOf(const std::vector<Placed>& places, int usualGap) {
   struct Column {
     std::size_t count = 0;
     bool isWide = false;
@@ -56,9 +57,16 @@ bool areLinedUp(const std::vector<Placed>& places, int usualGap) {
     ++column.count;
     column.isWide = column.isWide || place.gap > usualGap;
   }
-  return std::any_of(columns.begin(), columns.end(), [&](const auto& entry) {
-    return entry.second.isWide && 2 * entry.second.count > places.size();
-  });
+  for (const auto& [at, column] : columns)
+    if (column.count == places.size() || (column.isWide && 2 * column.count > places.size())) return at;
+  return std::nullopt;
+}
+
+bool areLinedUp(const std::vector<Placed>& places, int usualGap) {
+  const auto column = columnOf(places, usualGap);
+  return column && std::any_of(places.begin(), places.end(), [&](const Placed& place) {
+           return place.column == *column && place.gap > usualGap;
+         });
 }
 
 bool isOnOneLine(const DocumentComment& comment) { return comment.text.find('\n') == std::string::npos; }
@@ -74,6 +82,11 @@ bool hangs(const DocumentValue& value) {
   }
   return std::any_of(value.entries.begin() + 1, value.entries.end(),
                      [](const DocumentEntry& entry) { return entry.newLine; });
+}
+
+/// Whether it was typed on one line, and may hang where that is too long.
+bool mayHang(const DocumentValue& value) {
+  return value.entries.size() > 1 && !value.entries.front().newLine && flat(value, kAnyWidth);
 }
 
 /// Writes values that hang: the first entry behind the bracket and the others below that, on new lines where
@@ -109,7 +122,7 @@ class Hanging {
       text_ += key;
       if (oneLine)
         text_ += *oneLine;
-      else if (hangs(entry.value))
+      else if (hangs(entry.value) || mayHang(entry.value))
         write(entry.value, isLast ? closing : 1);
       else
         fits_ = false;
@@ -140,7 +153,7 @@ class Writer {
     }
   }
 
-  void value(const DocumentValue& value, std::size_t depth, std::size_t after) {
+  void value(const DocumentValue& value, std::size_t depth, std::size_t after, bool isLinedUp = false) {
     const std::size_t column = widthOf(std::string_view(text_).substr(text_.rfind('\n') + 1));
     const std::size_t used = column + after;
     const std::size_t room = used < Document::kLongestLine ? Document::kLongestLine - used : 0;
@@ -149,7 +162,8 @@ class Writer {
       text = value.text;
     else if (!isSection(value, depth))
       text = flat(value, room);
-    if (!text && !isSection(value, depth) && hangs(value)) text = Hanging(value, column, after).text();
+    if (!text && !isSection(value, depth) && (hangs(value) || (isLinedUp && mayHang(value))))
+      text = Hanging(value, column, after).text();
     if (text)
       text_ += *text;
     else
@@ -188,7 +202,7 @@ class Writer {
   void lines(const DocumentValue& value, std::size_t depth) {
     text_ += value.isObject ? '{' : '[';
     trailing(value.atStart, depth + 1);
-    const std::size_t keyWidth = widthOfKeys(value);
+    const std::vector<std::size_t> keyWidths = widthsOfKeys(value);
     std::vector<Commented> commented;
     bool isFirst = true;
     for (const DocumentEntry& entry : value.entries) {
@@ -197,11 +211,12 @@ class Writer {
       isFirst = false;
       const std::size_t begin = text_.size();
       const bool isLast = &entry == &value.entries.back();
+      const std::size_t width = keyWidths[static_cast<std::size_t>(&entry - value.entries.data())];
       if (!entry.keyText.empty()) {
         text_ += entry.keyText + ": ";
-        text_.append(keyWidth - std::min(keyWidth, widthOf(entry.keyText)), ' ');
+        text_.append(width - std::min(width, widthOf(entry.keyText)), ' ');
       }
-      this->value(entry.value, depth + 1, isLast ? 0 : 1);
+      this->value(entry.value, depth + 1, isLast ? 0 : 1, width > 0);
       if (!isLast) text_ += ',';
       if (!entry.after.empty() && text_.find('\n', begin) == std::string::npos) {
         const DocumentComment& comment = entry.after.front();
@@ -216,15 +231,46 @@ class Writer {
     text_ += value.isObject ? '}' : ']';
   }
 
-  /// The width that keys are filled up to; 0 where their values were not lined up.
-  static std::size_t widthOfKeys(const DocumentValue& value) {
-    std::vector<Placed> places;
-    std::size_t width = 0;
-    for (const DocumentEntry& entry : value.entries) {
-      places.push_back({entry.column, entry.gap});
-      width = std::max(width, widthOf(entry.keyText));
+  /// Entries [begin, end) without an empty line between them.
+  struct Group {
+    std::size_t begin = 0, end = 0, width = 0;  ///< of the longest key
+    std::vector<Placed> values;
+  };
+
+  static std::vector<Group> groupsOf(const DocumentValue& value) {
+    std::vector<Group> groups;
+    for (std::size_t i = 0; i < value.entries.size(); ++i) {
+      const DocumentEntry& entry = value.entries[i];
+      const bool isBlank = entry.blankBefore ||
+                           std::any_of(entry.before.begin(), entry.before.end(),
+                                       [](const DocumentComment& comment) { return comment.blankBefore; });
+      if (groups.empty() || isBlank) groups.push_back({i, i, 0, {}});
+      Group& group = groups.back();
+      group.end = i + 1;
+      group.width = std::max(group.width, widthOf(entry.keyText));
+      group.values.push_back({entry.column, entry.gap});
     }
-    return value.isObject && areLinedUp(places, 1) ? width : 0;
+    return groups;
+  }
+
+  /// What the key of each entry is filled up to; 0 where its value was not lined up with others: with all of
+  /// the object, or else with those of its group.
+  static std::vector<std::size_t> widthsOfKeys(const DocumentValue& value) {
+    std::vector<std::size_t> widths(value.entries.size(), 0);
+    if (!value.isObject) return widths;
+    const std::vector<Group> groups = groupsOf(value);
+    std::size_t longest = 0;
+    bool isOneColumn = true, isWide = false;
+    for (const Group& group : groups) {
+      longest = std::max(longest, group.width);
+      const auto column = columnOf(group.values, 1);
+      isOneColumn = isOneColumn && column && column == columnOf(groups.front().values, 1);
+      isWide = isWide || areLinedUp(group.values, 1);
+    }
+    for (const Group& group : groups)
+      for (std::size_t i = group.begin; i < group.end; ++i)
+        widths[i] = isOneColumn && isWide ? longest : areLinedUp(group.values, 1) ? group.width : 0;
+    return widths;
   }
 
   /// An entry on one line with a comment behind it.

@@ -95,7 +95,7 @@ TEST(Format, KeepsWhatIsLinedUp) {
   std::string aligned = kept;
   aligned.replace(aligned.find(mesh), mesh.size(), "\"mesh\":  {");
   EXPECT_EQ(formatted(aligned), aligned);
-  EXPECT_EQ(formatted(kept), aligned);  // most are lined up: so are all
+  EXPECT_EQ(formatted(kept), kept);
 }
 
 TEST(Format, LinesUpAnew) {
@@ -128,12 +128,47 @@ TEST(Format, LinesUpAnew) {
   EXPECT_EQ(formatted(single), "{\n  \"a\": 1,  // one\n  \"bc\": 2\n}\n");
 }
 
+TEST(Format, BreaksWhatIsTooLongAmongWhatIsLinedUp) {
+  const std::string text(60, 'x');
+  EXPECT_EQ(formatted("{\"nodes\": {\n\"a\":    { \"t\": 1 },\n\"long\": { \"t\": \"" + text +
+                      "\", \"u\": \"" + text + "\" } } }"),
+            "{\n  \"nodes\": {\n    \"a\":    { \"t\": 1 },\n    \"long\": { \"t\": \"" + text +
+                "\",\n              \"u\": \"" + text + "\" }\n  }\n}\n");
+}
+
+TEST(Format, LinesUpGroupsByThemselves) {
+  const std::string kept = R"({
+  "nodes": {
+    "mesh":   { "type": "X" },
+    "longer": { "type": "X" },
+
+    // Another group.
+    "splinter_crack": { "type": "X" },
+    "tets":           { "type": "X" },
+
+    "alone": { "type": "X" },
+
+    "not": { "type": "X" },
+    "lined": { "type": "X" },
+    "up": { "type": "X" }
+  }
+}
+)";
+  EXPECT_EQ(formatted(kept), kept);
+}
+
 TEST(Format, BreaksHangingLinesThatAreTooLong) {
   const std::string text(40, 'x');
   EXPECT_EQ(formatted("{\"nodes\": {\"a\": { \"b\": \"" + text + "\", \"c\": \"" + text + "\", \"d\": \"" +
                       text + "\",\n\"e\": 1}}}"),
             "{\n  \"nodes\": {\n    \"a\": { \"b\": \"" + text + "\", \"c\": \"" + text +
                 "\",\n           \"d\": \"" + text + "\",\n           \"e\": 1 }\n  }\n}\n");
+  // So are objects in them.
+  const std::string half(70, 'x');
+  EXPECT_EQ(formatted("{\"nodes\": {\"a\": { \"type\": \"X\",\n\"params\": { \"b\": \"" + half +
+                      "\", \"c\": \"" + half + "\"}}}}"),
+            "{\n  \"nodes\": {\n    \"a\": { \"type\": \"X\",\n           \"params\": { \"b\": \"" + half +
+                "\",\n                       \"c\": \"" + half + "\" } }\n  }\n}\n");
   // What fits nowhere stands below.
   const std::string endless(130, 'x');
   EXPECT_EQ(
