@@ -4,6 +4,7 @@
 namespace sherd {
 
 NodeType loadMeshNode();
+NodeType repairNode();
 NodeType tetrahedralizeNode();
 NodeType embedNode();
 NodeType simulateNode();
@@ -18,7 +19,7 @@ NodeType contactSheetNode();
 
 }  // namespace sherd
 
-SHERD_NODE_PACK(sherd::loadMeshNode, sherd::tetrahedralizeNode, sherd::embedNode, sherd::simulateNode,
-                sherd::readVdbNode, sherd::weightsNode, sherd::predictDegreeNode, sherd::cvdNode,
-                sherd::tessellateNode, sherd::exportCrackSurfaceNode, sherd::previewNode,
+SHERD_NODE_PACK(sherd::loadMeshNode, sherd::repairNode, sherd::tetrahedralizeNode, sherd::embedNode,
+                sherd::simulateNode, sherd::readVdbNode, sherd::weightsNode, sherd::predictDegreeNode,
+                sherd::cvdNode, sherd::tessellateNode, sherd::exportCrackSurfaceNode, sherd::previewNode,
                 sherd::contactSheetNode)

@@ -34,10 +34,10 @@ const Names kStepLayers{"geometry", "pictures", "types", "base"};
 /// Steps that may include the contract of another, <step>/<step>.h, and of which. Acyclic: each only names
 /// steps that stand above it.
 const std::vector<std::pair<std::string, Names>> kContracts{
-    {"load_mesh", {}},           {"tetrahedralize", {}}, {"embed", {}},   {"rigid", {}},
-    {"simulate", {"rigid"}},     {"beta", {}},           {"weights", {}}, {"cvd", {}},
-    {"predict_degree", {"cvd"}}, {"tessellate", {}},     {"export", {}},  {"preview", {}},
-    {"contact_sheet", {}},
+    {"repair", {}},  {"load_mesh", {"repair"}},   {"tetrahedralize", {}}, {"embed", {}},
+    {"rigid", {}},   {"simulate", {"rigid"}},     {"beta", {}},           {"weights", {}},
+    {"cvd", {}},     {"predict_degree", {"cvd"}}, {"tessellate", {}},     {"export", {}},
+    {"preview", {}}, {"contact_sheet", {}},
 };
 
 /// Libraries, by the beginning of the include, and the beginnings of the paths that may include them.
@@ -50,11 +50,11 @@ const std::vector<std::pair<Names, Names>> kLibraries{
     {{"iostream", "print"}, {"runtime/cli/"}},
     {{"openvdb/"},
      {"nodes/types/scalar_grid_vdb.h", "nodes/types/scalar_grid.cpp", "nodes/types/scalar_grid_archive.cpp",
-      "nodes/tetrahedralize/", "nodes/beta/"}},
+      "nodes/geometry/level_set.cpp", "nodes/beta/"}},
     {{"bullet/", "bt", "Bullet", "LinearMath/"}, {"nodes/rigid/"}},
     {{"assimp/"}, {"nodes/load_mesh/"}},
     {{"CGAL/"},
-     {"nodes/geometry/", "nodes/load_mesh/", "nodes/tetrahedralize/", "nodes/embed/", "nodes/rigid/",
+     {"nodes/geometry/", "nodes/repair/", "nodes/tetrahedralize/", "nodes/embed/", "nodes/rigid/",
       "nodes/tessellate/"}},
     {{"cholmod.h", "suitesparse/", "cblas.h", "Eigen/CholmodSupport"}, {"nodes/embed/", "nodes/simulate/"}},
     {{"Spectra/"}, {"nodes/embed/"}},
