@@ -26,6 +26,8 @@ NodeType loadMeshNode() {
               "auto: mends what keeps the surface from bounding a solid and says what it did, as node Repair "
               "does; "
               "strict: refuses it, naming each defect and its place")
+      // Only where a level set is the last resort. As in Tetrahedralize, which measured it.
+      .uninterruptible("OpenVDB's meshToVolume", 1120)
       .output<TriMesh>("mesh", "the surface, facing outward, with its normals, UVs, colours and materials")
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         SHERD_ASSIGN(TriMesh mesh, loadMesh(params, io.exec()));

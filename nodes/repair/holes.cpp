@@ -80,7 +80,8 @@ class Borders {
   std::map<Index, std::pair<Origin, Index>> beside_;
 };
 
-constexpr std::size_t kLongBorder = 2000;
+/// Where no Delaunay triangulation holds a filling, CGAL takes time with the third power.
+constexpr std::size_t kLongBorder = 500;
 
 /// Triangles between corners 0 … n − 1 of the loop, along its direction.
 std::vector<Triangle> strip(const std::vector<Vec3>& loop) {

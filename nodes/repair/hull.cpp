@@ -255,8 +255,14 @@ class Builder {
       if (before == 0 && behind == 0)
         for (const auto& [source, same] : layer.sources)
           if (!surface_.facets[at(source)].isNew) hull.lost.push_back(source);
-      if (!ahead && before != behind)
-        for (const Index v : layer.corners) hull.backward.push_back(points_[at(v)]);
+      if (!ahead && before != behind) {
+        Vec3 middle = Vec3::Zero();
+        for (const Index v : layer.corners) {
+          hull.backward.push_back(points_[at(v)]);
+          middle += points_[at(v)] / 3;
+        }
+        hull.backward.push_back(middle);
+      }
       return;
     }
     // Of the sources the first that faces the right way, and lies on the given surface rather than in a hole.

@@ -8,10 +8,11 @@
 namespace sherd {
 
 struct Hull {
-  Patchwork surface;           ///< rounded to doubles, not yet checked for what that does to it
-  std::size_t pairs = 0;       ///< of triangles that met
-  std::vector<Index> lost;     ///< triangles that stand free on both sides and bound nothing: leaves
-  std::vector<Vec3> backward;  ///< m, corners of faces around space of negative winding number, left out
+  Patchwork surface;        ///< rounded to doubles, not yet checked for what that does to it
+  std::size_t pairs = 0;    ///< of triangles that met
+  std::vector<Index> lost;  ///< triangles that stand free on both sides and bound nothing: leaves
+  std::vector<Vec3>
+      backward;  ///< m, corners and middles of faces around space of negative winding number, left out
 };
 
 /// The surface, cut along all lines in which it meets itself (arrangement.h), without the parts that don't

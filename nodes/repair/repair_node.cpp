@@ -37,6 +37,8 @@ NodeType repairNode() {
                .help = "thickness, as a share of the diagonal, given to parts without a solid behind them"})
       .integer("resolution", &Params::resolution,
                {.min = 8, .max = 2048, .help = "voxels along the diagonal, where a level set is needed"})
+      // Only where a level set is the last resort. As in Tetrahedralize, which measured it.
+      .uninterruptible("OpenVDB's meshToVolume", 1120)
       .output<TriMesh>("mesh", "closed, facing outward, free of self-intersections")
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         const auto given = io.in<TriMesh>("mesh");
