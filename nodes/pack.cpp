@@ -4,6 +4,7 @@
 namespace sherd {
 
 NodeType loadMeshNode();
+NodeType repairNode();
 NodeType tetrahedralizeNode();
 NodeType embedNode();
 NodeType simulateNode();
@@ -22,8 +23,8 @@ NodeType contactSheetNode();
 
 }  // namespace sherd
 
-SHERD_NODE_PACK(sherd::loadMeshNode, sherd::tetrahedralizeNode, sherd::embedNode, sherd::simulateNode,
-                sherd::readVdbNode, sherd::weightsNode, sherd::predictDegreeNode, sherd::cvdNode,
-                sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
+SHERD_NODE_PACK(sherd::loadMeshNode, sherd::repairNode, sherd::tetrahedralizeNode, sherd::embedNode,
+                sherd::simulateNode, sherd::readVdbNode, sherd::weightsNode, sherd::predictDegreeNode,
+                sherd::cvdNode, sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
                 sherd::exportCrackSurfaceNode, sherd::exportPiecesNode, sherd::exportProxiesNode,
                 sherd::previewNode, sherd::contactSheetNode)
