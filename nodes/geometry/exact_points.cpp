@@ -112,6 +112,25 @@ Number determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
+/// det[b−a, c−a, d−a] with some points shifted by 1 along an axis. Where neither none nor all are, it is
+/// linear in the shift.
+int shiftedSign(const std::array<const Vec3*, 4>& points, const std::array<bool, 4>& shifted,
+                std::size_t axis) {
+  std::array<std::array<Rational, 3>, 4> p;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[i][k] = Rational((*points[i])[static_cast<Eigen::Index>(k)]);
+      if (shifted[i] && k == axis) p[i][k] += 1;
+    }
+  std::array<std::array<Rational, 3>, 3> m;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k) m[i][k] = p[i + 1][k] - p[0][k];
+  const Rational d = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                     m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                     m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  return d > 0 ? 1 : d < 0 ? -1 : 0;
+}
+
 /// Distances of p and q from a plane, up to one common factor, both made non-negative.
 template <class Number>
 struct Depths {
@@ -125,12 +144,26 @@ Depths<Number> depths(const ExactPoints& points, Index p, Index q, const Triangl
   return {dp, dq};
 }
 
+/// A coordinate of (b − a) × (c − a).
+Rational normalCoordinate(const ExactPoints& points, const Triangle& t, std::size_t axis) {
+  const Eigen::Index i = static_cast<Eigen::Index>((axis + 1) % 3),
+                     j = static_cast<Eigen::Index>((axis + 2) % 3);
+  const auto difference = [&](Index to, Eigen::Index k) -> Rational {
+    return Rational(points[to][k]) - Rational(points[t[0]][k]);
+  };
+  return difference(t[1], i) * difference(t[2], j) - difference(t[1], j) * difference(t[2], i);
+}
+
 }  // namespace
 
 int ExactPoints::orientation(Index a, Index b, Index c, Index d) const {
   const Vec3 &pa = points_[at(a)], &pb = points_[at(b)], &pc = points_[at(c)], &pd = points_[at(d)];
   const auto exact = CGAL::orientation(toPoint(pa), toPoint(pb), toPoint(pc), toPoint(pd));
   if (exact != CGAL::COPLANAR) return exact == CGAL::POSITIVE ? 1 : -1;
+  const std::array<bool, 4> moved{isMoved(a), isMoved(b), isMoved(c), isMoved(d)};
+  if (const auto count = std::count(moved.begin(), moved.end(), true); count > 0 && count < 4)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (const int s = shiftedSign({&pa, &pb, &pc, &pd}, moved, axis); s != 0) return s;
   return displacedOrientation({{{a, &pa}, {b, &pb}, {c, &pc}, {d, &pd}}});
 }
 
@@ -158,7 +191,17 @@ int ExactPoints::compareCrossings(Index p, Index q, const Triangle& s, const Tri
   }
   const auto exact = compare(Rational(0));
   auto signOf = [](const Rational& r) { return r > 0 ? 1 : r < 0 ? -1 : 0; };
-  return signOf(exact[0]) * (signOf(exact[1]) < 0 ? -1 : 1) * (signOf(exact[2]) < 0 ? -1 : 1);
+  const int orientation = (signOf(exact[1]) < 0 ? -1 : 1) * (signOf(exact[2]) < 0 ? -1 : 1);
+  if (exact[0] != 0 || isMoved(p) == isMoved(s[0])) return signOf(exact[0]) * orientation;
+  // Moved along an axis, all depths change by that coordinate of their plane's normal: linear in the move.
+  const Rational direction = isMoved(p) ? 1 : -1;
+  const auto a = depths<Rational>(*this, p, q, s), b = depths<Rational>(*this, p, q, t);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Rational ofA = normalCoordinate(*this, s, axis), ofB = normalCoordinate(*this, t, axis);
+    const Rational change = direction * (ofA * (b.p - b.q) - ofB * (a.p - a.q));
+    if (change != 0) return signOf(change) * orientation;
+  }
+  return 0;
 }
 
 Vec3 ExactPoints::crossing(Index p, Index q, const Triangle& t) const {

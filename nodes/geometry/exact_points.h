@@ -1,9 +1,11 @@
 // Exact predicates on numbered points, with a consistent answer for every degenerate case.
 //
 // Orientations are those of the given doubles, exact (CGAL's filtered predicates). Where four points are
-// coplanar the answer is that of infinitely small displacements that depend on the points' numbers alone
-// (Simulation of Simplicity, Edelsbrunner and Mücke 1990), so that any set of answers belongs to one set of
-// points in general position: two surfaces that touch, or share a plane, cut each other cleanly all the same.
+// coplanar the answer is that of infinitely small displacements, so that any set of answers belongs to one
+// set of points in general position: two surfaces that touch, or share a plane, cut each other cleanly all
+// the same. For two bodies of points the first is thought of as moved as a whole by (t, t², t³), t → 0; where
+// that decides nothing, and for one body, each point is displaced by its number (Simulation of Simplicity,
+// Edelsbrunner and Mücke 1990).
 #pragma once
 
 #include <span>
@@ -16,6 +18,8 @@ class ExactPoints {
  public:
   /// Keeps a reference to `points`, whose order numbers them. Finite coordinates.
   explicit ExactPoints(std::span<const Vec3> points) : points_(points) {}
+  /// The points below `firstFixed` are the body that is moved.
+  ExactPoints(std::span<const Vec3> points, Index firstFixed) : points_(points), firstFixed_(firstFixed) {}
 
   const Vec3& operator[](Index i) const { return points_[at(i)]; }
 
@@ -30,7 +34,8 @@ class ExactPoints {
   bool crosses(Index p, Index q, const Triangle& t) const;
 
   /// Orders the crossings of segment pq with the planes of two triangles that it crosses: −1 where s comes
-  /// first seen from p, +1 where t does, 0 where both lie at the very same point of the given doubles.
+  /// first seen from p, +1 where t does, 0 where both lie at the very same point (of the given doubles; for
+  /// two bodies, one of the segment and the other of the triangles, also after the move).
   int compareCrossings(Index p, Index q, const Triangle& s, const Triangle& t) const;
 
   /// The point where pq crosses the triangle's plane, rounded; the same for (p, q) and (q, p). Lies on the
@@ -38,7 +43,10 @@ class ExactPoints {
   Vec3 crossing(Index p, Index q, const Triangle& t) const;
 
  private:
+  bool isMoved(Index i) const { return i < firstFixed_; }
+
   std::span<const Vec3> points_;
+  Index firstFixed_ = 0;
 };
 
 }  // namespace sherd

@@ -69,7 +69,7 @@ class Arranger {
   void findCrossings() {
     const std::size_t n = crack_.size(), blocks = (n + kBlock - 1) / kBlock;
     std::vector<std::vector<Pair>> surfacePairs(blocks), crackPairs(blocks);
-    const ExactPoints points(a_.positions);
+    const ExactPoints points(a_.positions, a_.firstCrack);
     parallelFor(exec_, n, kBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t c = begin; c < end; ++c)
         testTriangle(points, static_cast<Index>(c), surfacePairs[begin / kBlock], crackPairs[begin / kBlock]);
@@ -115,7 +115,7 @@ class Arranger {
   }
 
   bool orderSurface() {
-    const ExactPoints points(a_.positions);
+    const ExactPoints points(a_.positions, a_.firstCrack);
     return orderAlongEdges(
         surfaceCrossings_,
         [&](const Crossing& x, const Crossing& y) {
@@ -126,7 +126,7 @@ class Arranger {
   }
 
   bool orderSheets() {
-    const ExactPoints points(a_.positions);
+    const ExactPoints points(a_.positions, a_.firstCrack);
     return orderAlongEdges(
         a_.sheetCrossings,
         [&](const Crossing& x, const Crossing& y) {
@@ -141,7 +141,7 @@ class Arranger {
     for (EdgeCrossings* crossings : {&surfaceCrossings_, &a_.sheetCrossings})
       for (Crossing& x : crossings->list) x.vertex = next++;
     a_.positions.resize(at(next));
-    const ExactPoints points(a_.positions);
+    const ExactPoints points(a_.positions, a_.firstCrack);
     auto place = [&](const EdgeCrossings& crossings, std::span<const Triangle> triangles, auto ends) {
       parallelFor(exec_, crossings.list.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -184,7 +184,7 @@ class Arranger {
     // The tetrahedra's nodes are numbered behind the sheets' vertices.
     std::vector<Vec3> all(a_.positions.begin(), a_.positions.begin() + a_.firstNew);
     all.insert(all.end(), tets_.nodes.begin(), tets_.nodes.end());
-    return cellTowards(ExactPoints(all), vertex, tets_.tets[at(tet)][0] + a_.firstNew, tet);
+    return cellTowards(ExactPoints(all, a_.firstCrack), vertex, tets_.tets[at(tet)][0] + a_.firstNew, tet);
   }
 
   Index cellTowards(const ExactPoints& points, Index vertex, Index node, Index tet) const {

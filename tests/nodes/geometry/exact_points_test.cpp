@@ -100,6 +100,30 @@ TEST(ExactPoints, CrossingsAreOrderedExactly) {
   EXPECT_EQ(points.compareCrossings(0, 1, first, again), 0);
 }
 
+TEST(ExactPoints, ABodyThatTouchesAnotherIsMovedAsAWhole) {
+  // A moved square's corners in the plane x = 0 of a fixed triangle: all on the side that the move leads to.
+  std::vector<Vec3> p{Vec3(0, 0, 0),   Vec3(0, 1, 0),  Vec3(0, 1, 1), Vec3(0, 0, 1),
+                      Vec3(0, -5, -5), Vec3(0, 5, -5), Vec3(0, 0, 7)};
+  const ExactPoints points(p, 4);
+  const Triangle fixed{4, 5, 6};
+  for (Index i = 0; i < 4; ++i) EXPECT_EQ(points.side(fixed, i), 1);
+  // The very same seen from the fixed body.
+  for (Index i = 4; i < 7; ++i) EXPECT_EQ(points.side({0, 1, 2}, i), -1);
+}
+
+TEST(ExactPoints, CrossingsAtOnePointAreOrderedByTheMove) {
+  // A segment along x through the common edge of two fixed planes, x = y and x = −y; the move is along y,
+  // too, less.
+  std::vector<Vec3> p{Vec3(-1, 0, 0), Vec3(1, 0, 0),   Vec3(-3, -3, -3), Vec3(3, 3, -3),
+                      Vec3(0, 0, 5),  Vec3(-3, 3, -3), Vec3(3, -3, -3),  Vec3(0, 0, 5)};
+  const ExactPoints points(p, 2), still(p);
+  EXPECT_EQ(still.compareCrossings(0, 1, {2, 3, 4}, {5, 6, 7}), 0);
+  // At y = δ > 0 the segment meets x = −y first.
+  EXPECT_EQ(points.compareCrossings(0, 1, {2, 3, 4}, {5, 6, 7}), 1);
+  EXPECT_EQ(points.compareCrossings(0, 1, {5, 6, 7}, {2, 3, 4}), -1);
+  EXPECT_EQ(points.compareCrossings(1, 0, {2, 3, 4}, {5, 6, 7}), -1);
+}
+
 TEST(ExactPoints, CrossingPointKeepsSharedCoordinatesAndDoesNotDependOnDirection) {
   Rng rng(7);
   for (int i = 0; i < 200; ++i) {
