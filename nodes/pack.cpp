@@ -4,6 +4,7 @@
 namespace sherd {
 
 NodeType loadMeshNode();
+NodeType repairNode();
 NodeType tetrahedralizeNode();
 NodeType embedNode();
 NodeType simulateNode();
@@ -15,14 +16,15 @@ NodeType tessellateNode();
 NodeType selectPieceNode();
 NodeType convexProxiesNode();
 NodeType exportCrackSurfaceNode();
+NodeType exportPiecesNode();
 NodeType exportProxiesNode();
 NodeType previewNode();
 NodeType contactSheetNode();
 
 }  // namespace sherd
 
-SHERD_NODE_PACK(sherd::loadMeshNode, sherd::tetrahedralizeNode, sherd::embedNode, sherd::simulateNode,
-                sherd::readVdbNode, sherd::weightsNode, sherd::predictDegreeNode, sherd::cvdNode,
-                sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
-                sherd::exportCrackSurfaceNode, sherd::exportProxiesNode, sherd::previewNode,
-                sherd::contactSheetNode)
+SHERD_NODE_PACK(sherd::loadMeshNode, sherd::repairNode, sherd::tetrahedralizeNode, sherd::embedNode,
+                sherd::simulateNode, sherd::readVdbNode, sherd::weightsNode, sherd::predictDegreeNode,
+                sherd::cvdNode, sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
+                sherd::exportCrackSurfaceNode, sherd::exportPiecesNode, sherd::exportProxiesNode,
+                sherd::previewNode, sherd::contactSheetNode)

@@ -19,10 +19,19 @@ using Params = ExportCrackSurfaceParams;
 
 constexpr const char* kDescription = "pieces.json";
 
-std::string bytesOf(const Fragments& f, const Piece& piece, bool crack, const Params& params) {
-  if (params.format == Params::Format::Obj)
-    return crack ? crackObj(f, piece, params.crackNormals) : surfaceObj(f, piece);
-  return crack ? crackPly(f, piece, params.crackNormals) : surfacePly(f, piece);
+/// What is made of the pieces before files are written.
+struct Content {
+  const Fragments& f;
+  CrackAttributes cracks;
+  std::vector<Bond> bonds;
+};
+
+std::string bytesOf(const Content& content, std::size_t p, bool crack, Params::Format format) {
+  const Fragments& f = content.f;
+  const Piece& piece = f.pieces[p];
+  if (format == Params::Format::Obj)
+    return crack ? crackObj(f, piece, content.cracks.pieces[p]) : surfaceObj(f, piece);
+  return crack ? crackPly(f, piece, content.cracks.pieces[p]) : surfacePly(f, piece);
 }
 
 Result<void> checkInput(const Fragments& f) {
@@ -80,13 +89,13 @@ class Writer {
 };
 
 /// Writes all of the pieces' files, in parallel; stops early on cancel.
-std::vector<Outcome> writePieces(const Fragments& f, const Params& params, const std::vector<Job>& jobs,
+std::vector<Outcome> writePieces(const Content& content, Params::Format format, const std::vector<Job>& jobs,
                                  const std::vector<std::string>& names, Writer& writer, const Exec& exec) {
   std::vector<Outcome> outcomes(jobs.size());
   std::atomic<std::size_t> done{0};
   parallelFor(exec, jobs.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      outcomes[i] = writer.put(names[i], bytesOf(f, f.pieces[jobs[i].piece], jobs[i].crack, params));
+      outcomes[i] = writer.put(names[i], bytesOf(content, jobs[i].piece, jobs[i].crack, format));
       exec.progress(static_cast<double>(++done) / static_cast<double>(jobs.size()));
     }
   });
@@ -145,19 +154,21 @@ Plan plan(const Fragments& f, const Params& params) {
   return plan;
 }
 
-Result<ExportReport> writeInto(const Fragments& f, const Params& params, const Exec& exec) {
+Result<ExportReport> writeInto(const Content& content, const Params& params, const Exec& exec) {
+  const Fragments& f = content.f;
   const auto [jobs, names, pieceFiles] = plan(f, params);
   SHERD_CHECK(makeDirectory(params.directory));
   SHERD_ASSIGN(const OwnedFiles files, OwnedFiles::open(params.directory, names));
   warnOfLosses(*f.tets->surface, params, exec);
+  warnOfNames(*f.tets->surface, exec);
   if (exec.cancelled()) return cancelledError();
   SHERD_CHECK(files.claim());
   Writer writer(files);
-  std::vector<Outcome> outcomes = writePieces(f, params, jobs, names, writer, exec);
+  std::vector<Outcome> outcomes = writePieces(content, params.format, jobs, names, writer, exec);
   if (exec.cancelled()) return cancelledError();
   for (const Outcome& outcome : outcomes)
     if (outcome.error) return *outcome.error;
-  outcomes.push_back(writer.put(kDescription, piecesJson(f, pieceFiles)));
+  outcomes.push_back(writer.put(kDescription, piecesJson(f, content.bonds, pieceFiles)));
   if (outcomes.back().error) return *outcomes.back().error;
 
   ExportReport report;
@@ -178,7 +189,10 @@ Result<ExportReport> writeInto(const Fragments& f, const Params& params, const E
 
 Result<ExportReport> exportCrackSurface(const Fragments& f, const Params& params, const Exec& exec) {
   SHERD_CHECK(checkInput(f));
-  Result<ExportReport> report = writeInto(f, params, exec);
+  SHERD_ASSIGN(CrackAttributes cracks, styledCracks(f, {params.crackNormals, params.textureDensity}, exec));
+  SHERD_ASSIGN(std::vector<Bond> bonds, findBonds(f, exec));
+  const Content content{f, std::move(cracks), std::move(bonds)};
+  Result<ExportReport> report = writeInto(content, params, exec);
   if (report.ok() || report.error().kind == Error::Kind::Cancelled) return report;
   Error error = report.error();
   error.port = "directory";

@@ -8,16 +8,18 @@ NodeType exportCrackSurfaceNode() {
   return NodeBuilder<Params>(
              "ExportCrackSurface", 1,
              "Writes every piece as two files, its outer skin and its crack faces, and pieces.json "
-             "with masses, volumes, inertia and neighbours. Files of an earlier run are replaced or "
+             "with masses, volumes, inertia, neighbours and bonds. Files of an earlier run are replaced or "
              "removed; nothing else in the directory is touched.")
       .input<Fragments>("pieces", "the pieces to write")
       .outputDirectory("directory", &Params::directory, "where the files go; created where it is missing")
       .choice("format", &Params::format, {{"obj", Params::Format::Obj}, {"ply", Params::Format::Ply}},
               "obj (text; first UV set) or ply (binary, double; all UV sets and colours)")
       .choice("crack_normals", &Params::crackNormals,
-              {{"flat", Params::CrackNormals::Flat}, {"smooth", Params::CrackNormals::Smooth}},
-              "normals of the crack faces: one per triangle, or averaged over each face between two pieces")
+              {{"smooth", CrackNormals::Smooth}, {"flat", CrackNormals::Flat}}, kCrackNormalsHelp)
+      .number("texture_density", &Params::textureDensity,
+              {.unit = "1/m", .min = 0, .openMin = true, .help = kTextureDensityHelp})
       .output<std::string>("manifest", "path of pieces.json")
+      .implementation(2)
       .writesFiles()
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         SHERD_ASSIGN(ExportReport report, exportCrackSurface(*io.in<Fragments>("pieces"), params, io.exec()));

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "base/partial_file.h"
 
 namespace sherd {
 namespace {
@@ -74,9 +75,13 @@ Result<OwnedFiles> OwnedFiles::open(std::string directory, std::vector<std::stri
   files.manifest_ = std::move(manifest);
   files.directory_ = std::move(directory);
   files.names_ = std::move(names);
-  SHERD_ASSIGN(files.listed_, readManifest(files.path(files.manifest_)));
+  // What is there, before the manifest: another process may be listing and writing these very files just now.
+  std::vector<std::string> there;
   for (const std::string& name : files.names_)
-    if (!files.listed_.contains(name) && present(files.path(name)))
+    if (present(files.path(name))) there.push_back(name);
+  SHERD_ASSIGN(files.listed_, readManifest(files.path(files.manifest_)));
+  for (const std::string& name : there)
+    if (!files.listed_.contains(name))
       return failure(fmt::format("'{}' exists already and is not of an earlier export into this directory",
                                  files.path(name)),
                      "move it away, or choose another directory");
@@ -101,10 +106,10 @@ Result<std::size_t> OwnedFiles::commit(const std::vector<Digest>& digests) const
   Entries now;
   for (std::size_t i = 0; i < names_.size(); ++i) now[names_[i]] = digests[i].hex();
   std::size_t removed = 0;
-  // Partial files are what a killed run was writing just then.
-  SHERD_CHECK(removeFile(partialName(path(manifest_))));
+  SHERD_CHECK(removeAbandoned(directory_, [&](const std::string& name) {
+    return name == manifest_ || listed_.contains(name) || now.contains(name);
+  }));
   for (const auto& [name, digest] : listed_) {
-    SHERD_CHECK(removeFile(partialName(path(name))));
     if (now.contains(name)) continue;
     SHERD_ASSIGN(const bool gone, removeFile(path(name)));
     removed += gone;

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <numeric>
+
 #include "export/piece_files.h"
 #include "export/row_table.h"
 #include "export/text_buffer.h"
@@ -43,6 +46,15 @@ std::string objName(const std::string& name) {
 
 }  // namespace
 
+std::vector<std::size_t> crackOrder(const Piece& piece) {
+  std::vector<std::size_t> order(piece.crack.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return piece.crackNeighbour[a] < piece.crackNeighbour[b];
+  });
+  return order;
+}
+
 std::string surfaceObj(const Fragments& f, const Piece& piece) {
   const TriMesh& source = *f.tets->surface;
   const std::vector<Vec3> normals = surfaceNormals(f, piece);
@@ -52,12 +64,11 @@ std::string surfaceObj(const Fragments& f, const Piece& piece) {
   Lines<2> uvs("vt", hasUv ? count / 2 : 0);
   TextBuffer faces;
   faces.reserve(40 * count);
-  Index material = -1;
+  Index material = -2;
   for (std::size_t t = 0; t < count; ++t) {
-    const Index wanted = source.materialOf.empty() ? -1 : source.materialOf[at(piece.surfaceSource[t])];
+    const Index wanted = outerMaterial(source, piece, t);
     if (wanted != material)
-      faces << "usemtl " << (wanted < 0 ? std::string("none") : objName(source.materials[at(wanted)]))
-            << '\n';
+      faces << "usemtl " << (wanted < 0 ? kOutside : objName(source.materials[at(wanted)])) << '\n';
     material = wanted;
     faces << 'f';
     for (std::size_t c = 0; c < 3; ++c) {
@@ -78,29 +89,33 @@ std::string surfaceObj(const Fragments& f, const Piece& piece) {
   return out.take();
 }
 
-std::string crackObj(const Fragments& f, const Piece& piece, ExportCrackSurfaceParams::CrackNormals kind) {
+std::string crackObj(const Fragments& f, const Piece& piece, const CrackCorners& cracks) {
   const FileFrame& frame = f.tets->surface->frame;
-  const std::vector<Vec3> normals = crackNormals(f, piece, kind);
-  Lines<3> positions("v", piece.crack.size() / 2), directions("vn", piece.crack.size());
+  const std::size_t count = piece.crack.size();
+  Lines<3> positions("v", count / 2), directions("vn", count);
+  Lines<2> uvs("vt", count);
   TextBuffer faces;
-  faces.reserve(40 * piece.crack.size());
+  faces.reserve(50 * count);
   Index neighbour = -1;
   for (const std::size_t t : crackOrder(piece)) {
     if (piece.crackNeighbour[t] != neighbour) {
       neighbour = piece.crackNeighbour[t];
-      faces << "g " << piece.name << "_crack_with_" << f.pieces[at(neighbour)].name << "\nusemtl inside\n";
+      faces << "g " << piece.name << "_crack_with_" << f.pieces[at(neighbour)].name << "\nusemtl " << kInside
+            << '\n';
     }
     faces << 'f';
     for (std::size_t c = 0; c < 3; ++c) {
       faces << ' ' << positions.add(frame.toFile(f.positions[at(piece.crack[t][c])]));
-      faces << "//" << directions.add(frame.directionToFile(normals[3 * t + c]));
+      faces << '/' << uvs.add(cracks.uvs[3 * t + c]);
+      faces << '/' << directions.add(frame.directionToFile(cracks.normals[3 * t + c]));
     }
     faces << '\n';
   }
   TextBuffer out;
   head(out, f, piece.name + "_crack", "crack faces of a piece");
-  out.reserve(120 * piece.crack.size());
+  out.reserve(150 * count);
   positions.write(out);
+  uvs.write(out);
   directions.write(out);
   out << faces.take();
   return out.take();

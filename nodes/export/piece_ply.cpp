@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <functional>
+#include <set>
 
 #include "export/piece_files.h"
 #include "export/row_table.h"
@@ -72,7 +75,8 @@ std::vector<std::string> surfaceProperties(const TriMesh& source) {
   return names;
 }
 
-void unitComment(PlyFile& file, const Fragments& f) {
+void head(PlyFile& file, const Fragments& f, const Piece& piece) {
+  file.comment("piece " + piece.name);
   TextBuffer text;
   text << "sherd: unit and axes are those of the source file; 1 unit is "
        << f.tets->surface->frame.metresPerUnit << " m";
@@ -90,11 +94,14 @@ std::string oneLine(std::string name) {
 std::string surfacePly(const Fragments& f, const Piece& piece) {
   const TriMesh& source = *f.tets->surface;
   const std::vector<Vec3> normals = surfaceNormals(f, piece);
-  PlyFile file(surfaceProperties(source), source.materialOf.empty() ? "" : "material_index",
-               piece.surface.size());
-  unitComment(file, f);
+  PlyFile file(surfaceProperties(source), "material_index", piece.surface.size());
+  head(file, f, piece);
   for (std::size_t m = 0; m < source.materials.size(); ++m)
     file.comment("material " + std::to_string(m) + " " + oneLine(source.materials[m]));
+  const auto outside = static_cast<Index>(source.materials.size());
+  bool usesOutside = false;
+  for (std::size_t t = 0; t < piece.surface.size(); ++t) usesOutside |= outerMaterial(source, piece, t) < 0;
+  if (usesOutside) file.comment("material " + std::to_string(outside) + " " + kOutside);
   for (std::size_t i = 0; i < source.uvSets.size(); ++i)
     file.comment("uv set " + std::to_string(i) + " " + oneLine(source.uvSets[i].name));
   for (std::size_t i = 0; i < source.colorSets.size(); ++i)
@@ -106,21 +113,25 @@ std::string surfacePly(const Fragments& f, const Piece& piece) {
       for (const auto& set : source.uvSets) append(row, cornerAttribute(f, piece, t, c, set.uv));
       for (const auto& set : source.colorSets) append(row, cornerAttribute(f, piece, t, c, set.rgba));
     };
-    file.face(corner, source.materialOf.empty() ? -1 : source.materialOf[at(piece.surfaceSource[t])]);
+    const Index material = outerMaterial(source, piece, t);
+    file.face(corner, material < 0 ? outside : material);
   }
   return file.take();
 }
 
-std::string crackPly(const Fragments& f, const Piece& piece, ExportCrackSurfaceParams::CrackNormals kind) {
+std::string crackPly(const Fragments& f, const Piece& piece, const CrackCorners& cracks) {
   const FileFrame& frame = f.tets->surface->frame;
-  const std::vector<Vec3> normals = crackNormals(f, piece, kind);
-  PlyFile file({"x", "y", "z", "nx", "ny", "nz"}, "neighbour", piece.crack.size());
-  unitComment(file, f);
-  file.comment("inside: crack faces");
+  PlyFile file({"x", "y", "z", "nx", "ny", "nz", "s", "t"}, "neighbour", piece.crack.size());
+  head(file, f, piece);
+  file.comment(fmt::format("crack faces, all of material {}", kInside));
+  const std::set<Index> neighbours(piece.crackNeighbour.begin(), piece.crackNeighbour.end());
+  for (const Index neighbour : neighbours)
+    file.comment("neighbour " + std::to_string(neighbour) + " " + f.pieces[at(neighbour)].name);
   for (const std::size_t t : crackOrder(piece)) {
     const auto corner = [&](std::size_t c, std::vector<double>& row) {
       append(row, frame.toFile(f.positions[at(piece.crack[t][c])]));
-      append(row, frame.directionToFile(normals[3 * t + c]));
+      append(row, frame.directionToFile(cracks.normals[3 * t + c]));
+      append(row, cracks.uvs[3 * t + c]);
     };
     file.face(corner, piece.crackNeighbour[t]);
   }

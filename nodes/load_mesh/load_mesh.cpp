@@ -11,10 +11,10 @@
 #include <new>
 #include <utility>
 
+#include "geometry/inspect_surface.h"
+#include "geometry/weld.h"
 #include "load_mesh/file_mesh.h"
-#include "load_mesh/inspect_surface.h"
-#include "load_mesh/orient.h"
-#include "load_mesh/weld.h"
+#include "repair/repair.h"
 
 namespace sherd {
 namespace {
@@ -145,17 +145,6 @@ void sayWelded(const WeldCounts& counts, const std::string& name, const Exec& ex
               " that no face uses");
 }
 
-void sayTurned(const Turned& turned, const std::string& name, const Exec& exec) {
-  if (turned.triangles > 0)
-    exec.warn(name + ": turned " + counted(turned.triangles, "triangle", "triangles") +
-              " that faced the other way than the neighbours");
-  if (turned.shells > 0)
-    exec.warn(name + ": turned " + counted(turned.shells, "part", "parts") + " that was inside out");
-  if (turned.voids > 0)
-    exec.warn(name + ": turned the wall of " + counted(turned.voids, "void", "voids") +
-              ", which faced the solid");
-}
-
 /// From file coordinates to the program's.
 void toMetres(TriMesh& mesh) {
   for (Vec3& p : mesh.positions) p = mesh.frame.toMetres(p);
@@ -182,15 +171,14 @@ Result<TriMesh> load(const LoadMeshParams& params, const Exec& exec) {
   sayWelded(weld(mesh), name, exec);
   SHERD_CHECK(checkAttributes(mesh, params.file));
   if (exec.cancelled()) return cancelledError();
-  const Turned turned = orient(mesh);
-  if (exec.cancelled()) return cancelledError();
-  exec.progress(0.6);
-  report = inspectSurface(mesh, exec);
-  if (exec.cancelled()) return cancelledError();
-  if (auto error = refusal(report, params.file)) return *error;
-  sayTurned(turned, name, exec);
+  exec.progress(0.5);
+  const bool isStrict = params.repair == RepairMode::Strict;
+  const RepairParams how{.mode = isStrict ? RepairParams::Mode::Strict : RepairParams::Mode::Auto};
+  Exec rest = exec;
+  rest.onProgress = [&](double share) { exec.progress(0.5 + 0.5 * share); };
+  SHERD_ASSIGN(Repaired repaired, repair(std::move(mesh), how, rest));
   exec.progress(1);
-  return std::move(mesh);
+  return std::move(repaired.mesh);
 }
 
 }  // namespace

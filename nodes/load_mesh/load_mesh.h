@@ -3,8 +3,8 @@
 // OBJ, PLY, STL and OFF are read in double precision by readers of our own; everything else (glTF, FBX, …) by
 // assimp, in the single precision that it has. Positions are frame.toMetres(position in the file): with y up
 // and 1 m per unit the very doubles of the file. Normals turn along; no other attribute is touched. Vertices
-// of identical position are joined, collapsed triangles and unused vertices left out (weld.h), and parts that
-// are inside out turned (orient.h). Nothing else is repaired: what still doesn't bound a solid is refused.
+// of identical position are joined, collapsed triangles and unused vertices left out (weld.h). What then
+// doesn't bound a solid is repaired or refused (repair.h).
 #pragma once
 
 #include <string>
@@ -16,6 +16,10 @@
 namespace sherd {
 
 enum class UpAxis { Auto, Y, Z };
+enum class RepairMode {
+  Auto,   ///< mends what is wrong with the surface, as step repair does by default
+  Strict  ///< refuses whatever is wrong, parts that are inside out included
+};
 
 struct LoadMeshParams {
   std::string file;
@@ -24,15 +28,18 @@ struct LoadMeshParams {
   double length =
       0;  ///< m, ≥ 0; above 0 the mesh is scaled so that the longest side of its bounding box has this
           ///< length, whatever the unit. Enters frame.metresPerUnit, so that frame.toFile undoes it
+  RepairMode repair = RepairMode::Auto;
 };
 
 /// A closed, coherent, outward-facing 2-manifold without self-intersections, of any number of parts and
-/// voids. A message tells of everything that was assumed, left out or turned. Errors (port "file" or the
-/// parameter): no such file; a folder or device; unreadable; empty; not a mesh of the format that its name
-/// says (with line or byte); no triangles; coordinates that are not finite, in the file or after scaling;
-/// `length` of a mesh without extent; normals, texture coordinates or colours that are not finite; and one
-/// error for all defects of the surface, each with its count, first place in file coordinates and what to do
-/// (inspect_surface.h). Cost O(file size + triangles · log triangles).
+/// voids. A message tells of everything that was assumed, left out or repaired; warnings of what changed the
+/// visible surface. Errors (port "file" or the parameter): no such file; a folder or device; unreadable;
+/// empty; not a mesh of the format that its name says (with line or byte); no triangles; coordinates that are
+/// not finite, in the file or after scaling; `length` of a mesh without extent; normals, texture coordinates
+/// or colours that are not finite; where it is to be strict one error for all defects of the surface, each
+/// with its count, first place in file coordinates and what to do (geometry/inspect_surface.h); else what
+/// could not be repaired. Cost O(file size + triangles · log triangles) for a sound surface, and that of
+/// repair.h for others.
 Result<TriMesh> loadMesh(const LoadMeshParams& params, const Exec& exec);
 
 }  // namespace sherd

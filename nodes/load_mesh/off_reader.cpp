@@ -15,7 +15,7 @@ constexpr long long kMost = std::numeric_limits<Index>::max();
 class OffReader {
  public:
   OffReader(std::string_view content, const Exec& exec)
-      : scan_(content, TextScanner::Comments), exec_(exec) {}
+      : scan_(content, TextScanner::CloseComments), exec_(exec) {}
 
   Result<FileMesh> read() {
     SHERD_CHECK(header());

@@ -11,11 +11,12 @@
 namespace sherd {
 
 /// Walks through a text that it refers to. Lines end with LF, CR LF or CR. A word that starts with '#' begins
-/// a comment up to the line's end where comments are on; a '\' before a line's end joins two lines where
-/// joins are on.
+/// a comment up to the line's end where comments are on, any '#' where they may follow a word without a
+/// blank; a
+/// '\' before a line's end joins two lines where joins are on.
 class TextScanner {
  public:
-  enum Features : unsigned { Plain = 0, Comments = 1, Joins = 2 };
+  enum Features : unsigned { Plain = 0, Comments = 1, Joins = 2, CloseComments = 5 };
 
   explicit TextScanner(std::string_view text, unsigned features = Plain)
       : at_(text.data()), end_(text.data() + text.size()), features_(features) {}
@@ -28,7 +29,7 @@ class TextScanner {
   std::string_view word() {
     skipBlanks();
     const char* start = at_;
-    while (at_ != end_ && !endsWord(*at_)) ++at_;
+    while (at_ != end_ && !endsWord(*at_) && !(*at_ == '#' && (features_ & kClose) != 0)) ++at_;
     return {start, static_cast<std::size_t>(at_ - start)};
   }
 
@@ -66,6 +67,7 @@ class TextScanner {
   }
 
  private:
+  static constexpr unsigned kClose = 4;
   static bool blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\0'; }
   static bool endsWord(char c) { return blank(c) || c == '\n' || c == '\r'; }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/atomic_file.h"
+#include "base/partial_file.h"
 
 namespace sherd {
 
@@ -22,6 +23,7 @@ Result<void> writePng(const Picture& picture, const std::string& file) {
   const std::filesystem::path directory = std::filesystem::path(file).parent_path();
   if (!directory.empty()) SHERD_CHECK(makeDirectory(directory.string()));
   const auto written = writeFileAtomically(file, bytes);
+  if (written.ok()) SHERD_CHECK(removeAbandoned(file));
   return written.ok() ? Result<void>{} : written.error();
 }
 

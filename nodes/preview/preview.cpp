@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "geometry/crack_attributes.h"
 #include "pictures/label.h"
 #include "preview/camera.h"
 #include "preview/scene.h"
@@ -52,7 +53,8 @@ Result<std::vector<Panel>> makePanels(const Fragments& f, const EnergyField* ene
   std::vector<Panel> panels;
   SHERD_ASSIGN(Scene before, Scene::make(wholeSoup(body, normals, space, kClay), exec));
   panels.push_back({std::move(before), "before", {}});
-  SHERD_ASSIGN(Scene pieces, Scene::make(piecesSoup(f, normals, space, params.explode), exec));
+  SHERD_ASSIGN(const std::vector<std::vector<Vec3>> cracks, crackNormals(f, exec));
+  SHERD_ASSIGN(Scene pieces, Scene::make(piecesSoup(f, normals, cracks, space, params.explode), exec));
   panels.push_back({std::move(pieces), countOf(f.pieces.size()), {}});
   if (energy == nullptr) return panels;
   const TriMesh& shown = *energy->tets->surface;

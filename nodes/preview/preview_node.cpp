@@ -27,7 +27,7 @@ NodeType previewNode() {
            .help = "how far apart: each piece moves by this share of its distance from the body's centre"})
       .output<std::string>("file", "path of the PNG")
       .output<Picture>("picture", "the picture itself, for a ContactSheet")
-      .implementation(2)
+      .implementation(3)
       .writesFiles()
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         SHERD_ASSIGN(Picture picture, renderPreview(*io.in<Fragments>("pieces"),

@@ -80,7 +80,8 @@ Soup wholeSoup(const TriMesh& mesh, const std::vector<Vec3>& normals, const Pict
   return soup;
 }
 
-Soup piecesSoup(const Fragments& f, const std::vector<Vec3>& normals, const PictureSpace& space,
+Soup piecesSoup(const Fragments& f, const std::vector<Vec3>& normals,
+                const std::vector<std::vector<Vec3>>& crackNormals, const PictureSpace& space,
                 double explode) {
   Soup soup;
   const Vec3 centre = centreOfMass(f);
@@ -100,9 +101,8 @@ Soup piecesSoup(const Fragments& f, const std::vector<Vec3>& normals, const Pict
     for (const Triangle& corners : piece.crack) {
       addTriangle(soup, place(corners[0]), place(corners[1]), place(corners[2]));
       soup.paint.push_back(static_cast<Index>(2 * p + 1));
-      const Vec3f normal = areaVector(f.positions, corners).normalized().cast<float>();
-      soup.normals.insert(soup.normals.end(), 3, normal);
     }
+    for (const Vec3& normal : crackNormals[p]) soup.normals.push_back(normal.cast<float>());
   }
   return soup;
 }

@@ -26,8 +26,10 @@ std::vector<Vec3> shadingNormals(const TriMesh& mesh);
 Soup wholeSoup(const TriMesh& mesh, const std::vector<Vec3>& normals, const PictureSpace& space,
                const Colour& colour);
 
-/// The pieces, each moved by `explode` times the way from the body's centre of mass to its own.
-Soup piecesSoup(const Fragments& fragments, const std::vector<Vec3>& normals, const PictureSpace& space,
+/// The pieces, each moved by `explode` times the way from the body's centre of mass to its own. `normals` are
+/// those of the whole surface, `crackNormals` those of each piece's crack corners.
+Soup piecesSoup(const Fragments& fragments, const std::vector<Vec3>& normals,
+                const std::vector<std::vector<Vec3>>& crackNormals, const PictureSpace& space,
                 double explode);
 
 /// Energy density at the vertices of the surface that the field's tetrahedra hold, J/m³.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "geometry/crack_attributes.h"
 #include "select_piece/touching.h"
 
 namespace sherd {
@@ -41,7 +42,8 @@ Vec3 unit(const Vec3& v) {
 /// Builds the surface of one piece.
 class Maker {
  public:
-  Maker(const Fragments& f, const Piece& piece) : f_(f), source_(*f.tets->surface), piece_(piece) {}
+  Maker(const Fragments& f, const Piece& piece, const CrackCorners& crack)
+      : f_(f), source_(*f.tets->surface), piece_(piece), crack_(crack) {}
 
   Result<SelectedPiece> run() {
     gatherTriangles();
@@ -51,7 +53,7 @@ class Maker {
     mesh_.triangles = std::move(surface.triangles);
     setMaterials();
     setNormals();
-    for (const auto& set : source_.uvSets) mesh_.uvSets.push_back({set.name, corners(set.uv, crackUvs())});
+    for (const auto& set : source_.uvSets) mesh_.uvSets.push_back({set.name, corners(set.uv, crack_.uvs)});
     for (const auto& set : source_.colorSets)
       mesh_.colorSets.push_back(
           {set.name, corners(set.rgba, std::vector<Vec4>(3 * piece_.crack.size(), Vec4::Ones()))});
@@ -106,9 +108,7 @@ class Maker {
 
   void setNormals() {
     if (source_.normals.empty()) return;
-    std::vector<Vec3> crack;
-    for (const Triangle& t : piece_.crack) crack.insert(crack.end(), 3, unit(areaVector(t)));
-    mesh_.normals = corners(source_.normals, crack);
+    mesh_.normals = corners(source_.normals, crack_.normals);
     for (std::size_t t = 0; t < piece_.surface.size(); ++t) {
       if (piece_.surfaceCut[t] < 0) continue;
       for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) {
@@ -118,23 +118,10 @@ class Maker {
     }
   }
 
-  /// Metres along the two axes that the triangle faces least.
-  std::vector<Vec2> crackUvs() const {
-    std::vector<Vec2> uvs;
-    for (const Triangle& t : piece_.crack) {
-      Eigen::Index axis;
-      areaVector(t).cwiseAbs().maxCoeff(&axis);
-      for (const Index v : t) {
-        const Vec3& p = f_.positions[at(v)];
-        uvs.emplace_back(p[(axis + 1) % 3], p[(axis + 2) % 3]);
-      }
-    }
-    return uvs;
-  }
-
   const Fragments& f_;
   const TriMesh& source_;
   const Piece& piece_;
+  const CrackCorners& crack_;
   TriMesh mesh_;
 };
 
@@ -145,7 +132,13 @@ Result<SelectedPiece> selectPiece(const Fragments& f, const SelectPieceParams& p
     return failure("there are no pieces to choose from", "wire Tessellate's `pieces`", "pieces");
   SHERD_ASSIGN(const std::size_t p, choose(f, params));
   if (exec.cancelled()) return cancelledError();
-  return Maker(f, f.pieces[p]).run();
+  const bool wanted = !f.tets->surface->normals.empty() || !f.tets->surface->uvSets.empty();
+  CrackCorners crack;
+  if (wanted) {
+    SHERD_ASSIGN(CrackAttributes all, crackAttributes(f, exec));
+    crack = std::move(all.pieces[p]);
+  }
+  return Maker(f, f.pieces[p], crack).run();
 }
 
 }  // namespace sherd

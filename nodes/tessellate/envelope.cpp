@@ -49,7 +49,8 @@ void sortFirst(Tetra& list, std::size_t n) {
     for (std::size_t k = i; k > 0 && list[k - 1] > list[k]; --k) std::swap(list[k - 1], list[k]);
 }
 
-Approx determinant(const std::array<std::array<Approx, 4>, 4>& m, std::size_t n) {
+template <class Number>
+Number determinant(const std::array<std::array<Number, 4>, 4>& m, std::size_t n) {
   if (n == 1) return m[0][0];
   if (n == 2) return m[0][0] * m[1][1] - m[0][1] * m[1][0];
   const auto minor3 = [&](std::size_t row, std::size_t a, std::size_t b, std::size_t c) {
@@ -222,28 +223,44 @@ class TetEnvelope {
   std::vector<int> signs_;
 };
 
-/// Weights of the nodes in the vertex, from the minors of the differences to the first site.
-std::array<double, 4> weightsOf(const VertexName& name, const SiteValues& values) {
-  const std::size_t n = name.dimension() + 1;
-  std::array<std::array<Approx, 4>, 4> full;
+/// The minors of the differences to the first site, which are the nodes' weights times their sum.
+template <class Number, class Difference>
+std::array<Number, 4> minorsOf(std::size_t n, Difference differenceAt) {
+  std::array<std::array<Number, 4>, 4> full{};
   for (std::size_t r = 0; r < n; ++r)
-    for (std::size_t c = 0; c + 1 < n; ++c)
-      full[r][c] = difference(values.at(name.nodes[r]), name.ranks[c + 1], name.ranks[0]);
-  std::array<Approx, 4> minors;
-  Approx sum = 0;
+    for (std::size_t c = 0; c + 1 < n; ++c) full[r][c] = differenceAt(r, c);
+  std::array<Number, 4> minors{};
   for (std::size_t i = 0; i < n; ++i) {
-    std::array<std::array<Approx, 4>, 4> m;
+    std::array<std::array<Number, 4>, 4> m{};
     for (std::size_t r = 0, out = 0; r < n; ++r)
       if (r != i) m[out++] = full[r];
-    const Approx d = determinant(m, n - 1);
+    const Number d = determinant(m, n - 1);
     minors[i] = i % 2 == 0 ? d : -d;
-    sum = sum + minors[i];
   }
-  double error = sum.error;
-  for (std::size_t i = 0; i < n; ++i) error = std::max(error, minors[i].error);
-  std::array<double, 4> weights{};
-  if (error <= kWellConditioned * std::abs(sum.value)) {
-    for (std::size_t i = 0; i < n; ++i) weights[i] = minors[i].value / sum.value;
+  return minors;
+}
+
+std::array<double, 4> weightsOf(const VertexName& name, const SiteValues& values) {
+  const std::size_t n = name.dimension() + 1;
+  const auto rough = minorsOf<Approx>(n, [&](std::size_t r, std::size_t c) {
+    return difference(values.at(name.nodes[r]), name.ranks[c + 1], name.ranks[0]);
+  });
+  Approx sum = 0;
+  double error = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    sum = sum + rough[i];
+    error = std::max({error, rough[i].error, sum.error});
+  }
+  if (error <= kExtendedWillDo * std::abs(sum.value)) {
+    using Wide = long double;
+    const auto fine = minorsOf<Wide>(n, [&](std::size_t r, std::size_t c) {
+      const double* g = values.at(name.nodes[r]);
+      return static_cast<Wide>(g[name.ranks[c + 1]]) - static_cast<Wide>(g[name.ranks[0]]);
+    });
+    Wide whole = 0;
+    for (std::size_t i = 0; i < n; ++i) whole += fine[i];
+    std::array<double, 4> weights{};
+    for (std::size_t i = 0; i < n; ++i) weights[i] = static_cast<double>(fine[i] / whole);
     return weights;
   }
   std::array<AffineFunction, 3> functions;

@@ -156,6 +156,7 @@ class Assembler {
       piece.surfaceCut.reserve(counts[p][0]);
       piece.crack.reserve(counts[p][1]);
       piece.crackNeighbour.reserve(counts[p][1]);
+      piece.crackSheet.reserve(counts[p][1]);
     }
   }
 
@@ -177,7 +178,18 @@ class Assembler {
       if (own == other) continue;  // within one merged solid
       out_.pieces[at(own)].crack.push_back(faces.corners(f));
       out_.pieces[at(own)].crackNeighbour.push_back(other);
+      out_.pieces[at(own)].crackSheet.push_back(sheetNumber(faces.cell(f), faces.cell(faces.twin(f))));
     }
+  }
+
+  /// Sheets are numbered as they come; a sheet's triangles mostly follow one another.
+  Index sheetNumber(Index cell, Index other) {
+    const std::pair<Index, Index> cells = std::minmax(cell, other);
+    if (cells != lastCells_) {
+      lastCells_ = cells;
+      lastNumber_ = sheetNumbers_.try_emplace(cells, static_cast<Index>(sheetNumbers_.size())).first->second;
+    }
+    return lastNumber_;
   }
 
   void weigh(const SkinTriangle& skin, std::array<CornerWeights, 3>& weights) const {
@@ -236,7 +248,10 @@ class Assembler {
   std::span<const Triangle> neighbours_;
   double minVolume_, density_;
   const Exec& exec_;
-  std::vector<Index> pieceOf_;  ///< per solid
+  std::vector<Index> pieceOf_;                             ///< per solid
+  std::map<std::pair<Index, Index>, Index> sheetNumbers_;  ///< by the two cells
+  std::pair<Index, Index> lastCells_{-1, -1};
+  Index lastNumber_ = -1;
   Fragments out_;
 };
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace sherd {
 namespace {
@@ -166,7 +165,7 @@ class EarCutter {
 
 /// One pass over all inner edges; returns whether any was flipped.
 bool flipPass(const Plane& plane, std::vector<Triangle>& triangles,
-              const std::set<std::pair<Index, Index>>& fixed) {
+              std::span<const std::pair<Index, Index>> fixed) {
   struct Side {
     Index low, high, opposite;
     std::size_t triangle;
@@ -186,7 +185,8 @@ bool flipPass(const Plane& plane, std::vector<Triangle>& triangles,
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     const Side &s = sides[i], &t = sides[i + 1];
     if (s.low != t.low || s.high != t.high || s.forward == t.forward) continue;
-    if (fixed.count({s.low, s.high}) != 0 || touched[s.triangle] || touched[t.triangle]) continue;
+    if (touched[s.triangle] || touched[t.triangle]) continue;
+    if (std::binary_search(fixed.begin(), fixed.end(), std::pair(s.low, s.high))) continue;
     const Side &left = s.forward ? s : t, &right = s.forward ? t : s;
     const Index a = s.low, b = s.high, c = left.opposite, d = right.opposite;
     if (c == d || plane.turn(d, b, c) <= 0 || plane.turn(c, a, d) <= 0) continue;
@@ -202,12 +202,29 @@ bool flipPass(const Plane& plane, std::vector<Triangle>& triangles,
 
 void flipToBetterAngles(const Plane& plane, std::span<const Loop> loops, std::vector<Triangle>& triangles) {
   if (triangles.size() < 2) return;
-  std::set<std::pair<Index, Index>> fixed;
+  std::vector<std::pair<Index, Index>> fixed;
   for (const Loop& loop : loops)
     for (std::size_t i = 0; i < loop.size(); ++i)
-      fixed.insert(std::minmax(loop[i], loop[(i + 1) % loop.size()]));
+      fixed.push_back(std::minmax(loop[i], loop[(i + 1) % loop.size()]));
+  std::sort(fixed.begin(), fixed.end());
   for (std::size_t pass = 0; pass < 4 * triangles.size() && flipPass(plane, triangles, fixed); ++pass) {
   }
+}
+
+/// Splits a loop of four along the better of its diagonals; false where neither leaves two proper triangles.
+bool splitQuad(const Plane& plane, const Loop& q, std::vector<Triangle>& out) {
+  double best = 0;
+  std::size_t from = 4;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Index a = q[i], b = q[i + 1], c = q[i + 2], d = q[(i + 3) % 4];
+    if (a == c || b == d || plane.turn(a, b, c) <= 0 || plane.turn(a, c, d) <= 0) continue;
+    const double worst = std::min(plane.quality(a, b, c), plane.quality(a, c, d));
+    if (worst > best) best = worst, from = i;
+  }
+  if (from == 4) return false;
+  out.push_back({q[from], q[from + 1], q[from + 2]});
+  out.push_back({q[from], q[from + 2], q[(from + 3) % 4]});
+  return true;
 }
 
 bool pointInLoop(const Plane& plane, const Loop& loop, const Vec2& p) {
@@ -239,6 +256,8 @@ PolygonTriangulation triangulatePolygon(std::span<const PlanarCorner> corners, s
     result.triangles.push_back({loops[0][0], loops[0][1], loops[0][2]});
     return result;
   }
+  if (loops.size() == 1 && loops[0].size() == 4 && splitQuad(plane, loops[0], result.triangles))
+    return result;
   std::vector<Loop> outers, holes;
   for (const Loop& loop : loops) {
     (loops.size() == 1 || loopArea2(corners, loop) >= 0 ? outers : holes).push_back(loop);

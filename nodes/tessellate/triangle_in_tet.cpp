@@ -7,12 +7,41 @@ namespace sherd {
 namespace {
 
 constexpr double kUnit = 0x1p-53;
-constexpr double kWellConditioned = 1e-11;  ///< relative error of weights up to which doubles are good enough
+/// Relative error bounds of weights up to which doubles, and extended precision where the bound is that of
+/// doubles, give positions that are right to the last digits. (The bounds are a hundred times what is
+/// typical.)
+constexpr double kDoubleWillDo = 1e-15, kExtendedWillDo = 2e-12;
+
+using Wide = long double;
+
+Wide wideCoordinate(const TetFrame& frame, std::size_t i, const Vec3& point) {
+  const auto& face = kTetraFace[i];
+  std::array<std::array<Wide, 3>, 3> d;
+  const Vec3* ends[] = {&frame.corners[static_cast<std::size_t>(face[2])],
+                        &frame.corners[static_cast<std::size_t>(face[1])], &point};
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t k = 0; k < 3; ++k)
+      d[r][k] = static_cast<Wide>((*ends[r])[static_cast<Eigen::Index>(k)]) -
+                static_cast<Wide>(frame.base[i][static_cast<Eigen::Index>(k)]);
+  Wide sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+    sum += (d[0][l] * d[1][m] - d[0][m] * d[1][l]) * d[2][k];
+  }
+  return sum;
+}
+
+Wide wideDifference(const TetFrame& frame, const Vec3& point, Index plus, Index minus) {
+  Wide sum = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    sum += wideCoordinate(frame, i, point) *
+           (static_cast<Wide>(frame.g[i][plus]) - static_cast<Wide>(frame.g[i][minus]));
+  return sum;
+}
 
 }  // namespace
 
 TetFrame::TetFrame(const TetMesh& tets, const SiteValues& values, Index tet) {
-  double longest = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     corners[i] = tets.nodes[at(tets.tets[at(tet)][i])];
     g[i] = values.at(tets.tets[at(tet)][i]);
@@ -64,18 +93,33 @@ AffineFunction TetFrame::cornerFunction(int corner) {
   return f;
 }
 
-int TetFrame::sign(const SurfaceVertex& vertex, const std::array<Approx, 4>& coordinates, Index plus,
+int TetFrame::sign(const Vec3& vertex, const std::array<Approx, 4>& coordinates, Index plus,
                    Index minus) const {
   if (const int s = difference(coordinates, plus, minus).sign(); s != 0) return s;
   const AffineFunction f = differenceFunction(plus, minus);
   return vertexDeterminantSign(corners, std::span(&vertex, 1), std::span(&f, 1));
 }
 
+SheetPlane::SheetPlane(const TetFrame& frame, Index back, Index front)
+    : base(frame.corners[0]), normal(Vec3::Zero()) {
+  double size = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double d = frame.g[i][front] - frame.g[i][back];
+    normal += d * frame.inward[i];
+    size += std::abs(d);
+    if (i == 0) offset = d * frame.inward[0].dot(base - frame.base[0]);
+  }
+  // Twice what the coordinates bring along, for the sums here; corners are at most 3 longest edges apart in
+  // this norm.
+  error = 2 * frame.error * size;
+  errorAtBase = 2 * error * frame.longest;
+}
+
 TriangleInTet::TriangleInTet(const TetFrame& frame, const Triangle& corners, std::span<const Vec3> positions)
     : frame_(frame) {
   for (std::size_t c = 0; c < 3; ++c) {
-    vertices_[c] = {corners[c], positions[at(corners[c])]};
-    coordinates_[c] = frame.coordinates(vertices_[c].point);
+    vertices_[c] = positions[at(corners[c])];
+    coordinates_[c] = frame.coordinates(vertices_[c]);
   }
 }
 
@@ -104,7 +148,7 @@ int TriangleInTet::determinantSign(std::span<const std::size_t> corners,
                        ? minor(0, 0, 1)
                        : m[0][0] * minor(1, 1, 2) - m[0][1] * minor(1, 0, 2) + m[0][2] * minor(1, 0, 1);
   if (const int s = d.sign(); s != 0) return s;
-  std::array<SurfaceVertex, 3> points;
+  std::array<Vec3, 3> points;
   std::array<AffineFunction, 3> exact;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     points[i] = vertices_[corners[i]];
@@ -152,36 +196,51 @@ bool TriangleInTet::meets(Index back, Index front, std::span<const SheetEdgeLine
 }
 
 std::array<double, 3> TriangleInTet::weights(const SegmentEnd& end) const {
-  std::array<double, 3> result{};
   const bool onSide = end.side >= 0;
+  const int own = static_cast<int>(end.slot);
   std::array<std::size_t, 3> corners{0, 1, 2};
   if (onSide) corners[0] = static_cast<std::size_t>(end.side), corners[1] = (corners[0] + 1) % 3;
-  std::array<Approx, 3> minors;
-  if (onSide) {
-    minors = {sheet_[corners[1]], -sheet_[corners[0]], 0.0};
-  } else {
-    const int own = static_cast<int>(end.slot);
+  const std::size_t n = onSide ? 2 : 3;
+  // On a side the minors are the other end's values, else those of the sheet and the edge's line.
+  const auto minors = [&](auto sheet, auto line) {
+    using Number = decltype(sheet(0));
+    std::array<Number, 3> m{};
+    if (onSide) return std::array<Number, 3>{sheet(corners[1]), -sheet(corners[0]), m[2]};
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-      minors[i] = sheet_[j] * value(own, k) - sheet_[k] * value(own, j);
+      m[i] = sheet(j) * line(k) - sheet(k) * line(j);
     }
+    return m;
+  };
+  const auto rough =
+      minors([&](std::size_t c) { return sheet_[c]; }, [&](std::size_t c) { return value(own, c); });
+  const Approx sum = rough[0] + rough[1] + rough[2];
+  const double error = std::max({sum.error, rough[0].error, rough[1].error, rough[2].error});
+  std::array<double, 3> result{};
+  if (error <= kDoubleWillDo * std::abs(sum.value)) {
+    for (std::size_t i = 0; i < n; ++i) result[corners[i]] = rough[i].value / sum.value;
+  } else if (error <= kExtendedWillDo * std::abs(sum.value)) {
+    const auto fine =
+        minors([&](std::size_t c) { return wideDifference(frame_, vertices_[c], front_, back_); },
+               [&](std::size_t c) { return wideValue(own, c); });
+    const Wide whole = fine[0] + fine[1] + fine[2];
+    for (std::size_t i = 0; i < n; ++i) result[corners[i]] = static_cast<double>(fine[i] / whole);
+  } else {
+    std::array<Vec3, 3> points;
+    for (std::size_t i = 0; i < n; ++i) points[i] = vertices_[corners[i]];
+    std::array<AffineFunction, 2> functions{affine(kSheet)};
+    if (!onSide) functions[1] = affine(own);
+    const auto exact =
+        vertexWeights(frame_.corners, std::span(points).first(n), std::span(functions).first(n - 1));
+    for (std::size_t i = 0; i < n; ++i) result[corners[i]] = exact[i];
   }
-  const Approx sum = minors[0] + minors[1] + minors[2];
-  const double error = std::max({sum.error, minors[0].error, minors[1].error, minors[2].error});
-  if (error <= kWellConditioned * std::abs(sum.value)) {
-    for (std::size_t i = 0; i < 3; ++i)
-      if (!onSide || i < 2) result[corners[i]] = minors[i].value / sum.value;
-    return result;
-  }
-  const std::size_t n = onSide ? 2 : 3;
-  std::array<SurfaceVertex, 3> points;
-  for (std::size_t i = 0; i < n; ++i) points[i] = vertices_[corners[i]];
-  std::array<AffineFunction, 2> functions{affine(kSheet)};
-  if (!onSide) functions[1] = affine(static_cast<int>(end.slot));
-  const auto exact =
-      vertexWeights(frame_.corners, std::span(points).first(n), std::span(functions).first(n - 1));
-  for (std::size_t i = 0; i < n; ++i) result[corners[i]] = exact[i];
   return result;
+}
+
+long double TriangleInTet::wideValue(int function, std::size_t corner) const {
+  const SheetEdgeLine& line = lines_[static_cast<std::size_t>(function)];
+  if (line.face >= 0) return wideCoordinate(frame_, static_cast<std::size_t>(line.face), vertices_[corner]);
+  return wideDifference(frame_, vertices_[corner], line.third, back_);
 }
 
 }  // namespace sherd

@@ -14,6 +14,7 @@ namespace sherd {
 struct TetFrame {
   std::array<Vec3, 4> corners;
   std::array<Vec3, 4> base, inward;  ///< coordinate i of a point p is inward[i] · (p − base[i])
+  double longest = 0;                ///< m, largest extent along an axis
   double error = 0;                  ///< of a coordinate, per metre of ‖p − base‖₁
   std::array<const double*, 4> g{};
 
@@ -25,8 +26,20 @@ struct TetFrame {
   AffineFunction differenceFunction(Index plus, Index minus) const;
   static AffineFunction cornerFunction(int corner);
   /// Sign of g_plus − g_minus at a surface vertex, with ties.
-  int sign(const SurfaceVertex& vertex, const std::array<Approx, 4>& coordinates, Index plus,
-           Index minus) const;
+  int sign(const Vec3& vertex, const std::array<Approx, 4>& coordinates, Index plus, Index minus) const;
+};
+
+/// g_front − g_back in a tetrahedron, times six volumes, as one plane: a first and cheap look.
+struct SheetPlane {
+  Vec3 base, normal;
+  double offset = 0, error = 0, errorAtBase = 0;
+
+  SheetPlane(const TetFrame& frame, Index back, Index front);
+  /// +1 or −1 where the sign at a point is certain, else 0.
+  int sign(const Vec3& point) const {
+    const Vec3 d = point - base;
+    return Approx(normal.dot(d) + offset, error * d.cwiseAbs().sum() + errorAtBase).sign();
+  }
 };
 
 /// An end of a segment: on side `side` of the triangle, or else on the polygon's edge number `slot`.
@@ -56,12 +69,13 @@ class TriangleInTet {
   static constexpr int kSheet = -1;  ///< the function g_front − g_back; from 0 on an edge line's
 
   Approx value(int function, std::size_t corner) const;
+  long double wideValue(int function, std::size_t corner) const;
   AffineFunction affine(int function) const;
   int determinantSign(std::span<const std::size_t> corners, std::span<const int> functions) const;
   int signAtEnd(const SegmentEnd& end, int function) const;
 
   const TetFrame& frame_;
-  std::array<SurfaceVertex, 3> vertices_;
+  std::array<Vec3, 3> vertices_;
   std::array<std::array<Approx, 4>, 3> coordinates_;
   Index back_ = -1, front_ = -1;
   std::span<const SheetEdgeLine> lines_;

@@ -10,7 +10,7 @@
 #include "geometry/surface_tree.h"
 #include "tetrahedralize/gaps.h"
 #include "tetrahedralize/graded_minimum.h"
-#include "tetrahedralize/level_set.h"
+#include "geometry/level_set.h"
 #include "tetrahedralize/shells.h"
 #include "tetrahedralize/volume_mesher.h"
 

@@ -11,7 +11,7 @@ namespace {
 
 void hashPiece(Hasher& hasher, const Piece& p) {
   hasher.add(p.name).add(p.cell).add(p.surface).add(p.surfaceSource).add(p.surfaceCut);
-  hasher.add(p.crack).add(p.crackNeighbour);
+  hasher.add(p.crack).add(p.crackNeighbour).add(p.crackSheet);
   hashBits(hasher, p.volume);
   hashBits(hasher, p.centreOfMass);
   hashBits(hasher, p.inertia);
@@ -25,6 +25,7 @@ void putPiece(ArchiveWriter& to, const Piece& p) {
   to.array(p.surfaceCut);
   to.array(p.crack);
   to.array(p.crackNeighbour);
+  to.array(p.crackSheet);
   to.put(p.volume);
   putBits(to, p.centreOfMass);
   putBits(to, p.inertia);
@@ -38,6 +39,7 @@ void getPiece(ArchiveReader& from, Piece& p) {
   from.array(p.surfaceCut);
   from.array(p.crack);
   from.array(p.crackNeighbour);
+  from.array(p.crackSheet);
   from.get(p.volume);
   getBits(from, p.centreOfMass);
   getBits(from, p.inertia);
@@ -47,10 +49,12 @@ bool isSound(const Piece& p, const Fragments& f) {
   const TriMesh* source = f.tets ? f.tets->surface.get() : nullptr;
   return p.cell >= -1 && p.surfaceSource.size() == p.surface.size() &&
          p.surfaceCut.size() == p.surface.size() && p.crackNeighbour.size() == p.crack.size() &&
-         allInRange(p.surface, 0, f.positions.size()) && allInRange(p.crack, 0, f.positions.size()) &&
+         p.crackSheet.size() == p.crack.size() && allInRange(p.surface, 0, f.positions.size()) &&
+         allInRange(p.crack, 0, f.positions.size()) &&
          allInRange(p.surfaceSource, 0, source ? source->triangles.size() : 0) &&
          allInRange(p.surfaceCut, -1, f.cutCorners.size()) &&
-         allInRange(p.crackNeighbour, 0, f.pieces.size());
+         allInRange(p.crackNeighbour, 0, f.pieces.size()) &&
+         allInRange(p.crackSheet, 0, std::numeric_limits<std::size_t>::max());
 }
 
 bool isSound(const Fragments& f) {
@@ -74,7 +78,7 @@ std::size_t byteSize(const Fragments& f) {
   std::size_t bytes = f.positions.size() * sizeof(Vec3) + f.cutCorners.size() * 3 * sizeof(CornerWeights);
   for (const Piece& p : f.pieces)
     bytes += p.surface.size() * (sizeof(Triangle) + 2 * sizeof(Index)) +
-             p.crack.size() * (sizeof(Triangle) + sizeof(Index));
+             p.crack.size() * (sizeof(Triangle) + 2 * sizeof(Index));
   return bytes;
 }
 

@@ -27,6 +27,8 @@ struct Piece {
   std::vector<Index> surfaceCut;  ///< per outer triangle: entry of Fragments::cutCorners, −1 for an uncut one
   std::vector<Triangle> crack;    ///< crack faces, counter-clockwise from outside this piece
   std::vector<Index> crackNeighbour;  ///< per crack triangle: the piece that holds its twin
+  std::vector<Index> crackSheet;      ///< per crack triangle: its sheet, where two cells met as they were
+                                      ///< cut, numbered from 0 over all pieces; the same for both twins
   double volume = 0;                  ///< m³
   Vec3 centreOfMass = Vec3::Zero();   ///< m
   Mat3 inertia = Mat3::Zero();        ///< kg·m², about the centre of mass, program axes
@@ -44,7 +46,7 @@ struct FractureCounts {
 
 struct Fragments {
   static constexpr const char* typeName = "Pieces";
-  static constexpr int archiveVersion = 1;
+  static constexpr int archiveVersion = 2;
   std::shared_ptr<const TetMesh> tets;  ///< tets->surface is the source surface
   Material material;
   std::vector<Vec3> positions;                           ///< m; the first ones are the source's, in its order

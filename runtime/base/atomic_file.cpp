@@ -1,18 +1,19 @@
 #include "base/atomic_file.h"
 
 #include <fcntl.h>
-#include <poll.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
+#include <utility>
+
+#include "base/partial_file.h"
 
 namespace sherd {
 namespace {
@@ -73,100 +74,65 @@ bool fileHolds(const std::string& path, std::string_view content) {
 
 namespace {
 
-/// Paths of files that are being written; null where a place is free.
-constexpr std::size_t kMostPartial = 1024;
-std::array<std::atomic<const char*>, kMostPartial> gPartial{};
-
-constexpr int kMostWaits = 20;     // ms
-std::atomic<bool> gEnding{false};  ///< removePartialFiles() was called
-std::atomic<int> gMaking{0};       ///< threads that may be making a file just now
-thread_local volatile std::sig_atomic_t tIsMaking = 0;
-
-/// The process is about to end, by another thread: nothing more is to be done.
-[[noreturn]] void waitForTheEnd() {
-  while (true) ::pause();
-}
-
-/// While one of these is there, a file may appear. removePartialFiles() waits until there are none, and no
-/// new ones come: else a file could appear behind its back.
-class Making {
- public:
-  Making() {
-    ++gMaking;
-    tIsMaking = 1;
-    if (!gEnding) return;
-    leave();
-    waitForTheEnd();
-  }
-  ~Making() { leave(); }
-  Making(const Making&) = delete;
-  Making& operator=(const Making&) = delete;
-
- private:
-  static void leave() {
-    tIsMaking = 0;
-    --gMaking;
-  }
-};
+constexpr int kMostAttempts = 16;  // at a name of its own
 
 Descriptor makeFile(const std::string& path) {
-  const Making making;
-  return Descriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666));
+  const MakingFile making;
+  return Descriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
+}
+
+/// False where another process that looks for abandoned files came between; a file system without locks has
+/// no such danger.
+bool lockNew(const Descriptor& file) {
+  struct stat info {};
+  const bool taken = ::flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  return !taken && ::fstat(file.number(), &info) == 0 && info.st_nlink > 0;
 }
 
 /// 0, or the error number.
-int writeAll(const std::string& path, std::string_view content) {
-  Descriptor file = makeFile(path);
-  if (file.number() < 0) return errno;
+int writeAll(const Descriptor& file, std::string_view content) {
   while (!content.empty()) {
     const ssize_t put = ::write(file.number(), content.data(), content.size());
     if (put < 0 && errno == EINTR) continue;
     if (put < 0) return errno;
     content.remove_prefix(static_cast<std::size_t>(put));
   }
-  return file.close() ? 0 : errno;
+  // Some errors only show on closing; but the lock has to last until the file has its final name.
+  Descriptor twin(::fcntl(file.number(), F_DUPFD_CLOEXEC, 0));
+  return twin.number() >= 0 && twin.close() ? 0 : errno;
+}
+
+/// Gives the file those that the one at `path` has, if there is one. 0, or the error number.
+int takePermissions(const Descriptor& file, const std::string& path) {
+  constexpr mode_t kPermissions = 0777;
+  struct stat old {
+  }, now{};
+  if (::lstat(path.c_str(), &old) != 0 || !S_ISREG(old.st_mode)) return 0;
+  if (::fstat(file.number(), &now) != 0) return errno;
+  if (((old.st_mode ^ now.st_mode) & kPermissions) == 0) return 0;  // all there is where files have none
+  return ::fchmod(file.number(), old.st_mode & kPermissions) == 0 ? 0 : errno;
+}
+
+/// 0, EEXIST where the name was not to be had, or another error number.
+int writeAs(const std::string& partial, const std::string& path, std::string_view content) {
+  const PartialFile known(partial);
+  const Descriptor file = makeFile(partial);
+  if (file.number() < 0) return errno;
+  int error = lockNew(file) ? writeAll(file, content) : EEXIST;
+  if (error == 0) error = takePermissions(file, path);
+  if (error == 0 && ::rename(partial.c_str(), path.c_str()) != 0) error = errno;
+  if (error != 0) ::unlink(partial.c_str());
+  return error;
 }
 
 }  // namespace
 
-PartialFile::PartialFile(std::string path) : path_(std::move(path)) {
-  for (std::size_t i = 0; i < kMostPartial; ++i) {
-    const char* free = nullptr;
-    if (!gPartial[i].compare_exchange_strong(free, path_.c_str())) continue;
-    slot_ = static_cast<int>(i);
-    return;
-  }
-}
-
-PartialFile::~PartialFile() {
-  if (slot_ >= 0) gPartial[static_cast<std::size_t>(slot_)] = nullptr;
-  if (gEnding) waitForTheEnd();  // the path may be read just now
-}
-
-void removePartialFiles() noexcept {
-  gEnding = true;
-  // A thread that the signal interrupted makes nothing more. A file system that hangs is not waited for.
-  const int own = tIsMaking;
-  for (int waits = 0; gMaking > own && waits < kMostWaits; ++waits) ::poll(nullptr, 0, 1);
-  for (const auto& partial : gPartial)
-    if (const char* path = partial.load()) ::unlink(path);
-}
-
-std::string partialName(const std::string& path) { return path + ".partial"; }
-
 Result<FileChange> writeFileAtomically(const std::string& path, std::string_view content) {
-  const std::string partial = partialName(path);
-  if (fileHolds(path, content)) {
-    ::unlink(partial.c_str());  // of a run that was killed
-    return FileChange::Kept;
-  }
-  const PartialFile known(partial);
-  int error = writeAll(partial, content);
-  if (error == 0 && ::rename(partial.c_str(), path.c_str()) != 0) error = errno;
-  if (error != 0) {
-    ::unlink(partial.c_str());
-    return writeError(path, error);
-  }
+  if (fileHolds(path, content)) return FileChange::Kept;
+  int error = EEXIST;
+  for (int attempt = 0; attempt < kMostAttempts && error == EEXIST; ++attempt)
+    error = writeAs(partialName(path), path, content);
+  if (error != 0) return writeError(path, error);
   return FileChange::Written;
 }
 

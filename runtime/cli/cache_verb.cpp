@@ -1,8 +1,9 @@
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
 #include <filesystem>
 
+#include "cli/cache_size.h"
 #include "cli/usage.h"
 #include "cli/verbs.h"
 #include "eval/disk_store.h"
@@ -13,21 +14,9 @@ namespace {
 
 const std::vector<std::string> kActions{"stat", "gc", "verify", "clear"};
 
-std::string sizeText(std::uint64_t bytes) {
-  static constexpr const char* kUnits[] = {"KiB", "MiB", "GiB", "TiB"};
-  if (bytes < 1024) return fmt::format("{} bytes", bytes);
-  double size = static_cast<double>(bytes) / 1024;
-  std::size_t unit = 0;
-  while (size >= 1023.95 && unit + 1 < std::size(kUnits)) {
-    size /= 1024;
-    ++unit;
-  }
-  return fmt::format("{:.1f} {}", size, kUnits[unit]);
-}
-
 int refuse(const Error& error, Console& console, ExitCode code) {
   Diagnostics diagnostics;
-  diagnostics.add({}, "", error);
+  diagnostics.add({}, error.port, error);
   printDiagnostics(diagnostics, console.err);
   return code;
 }
@@ -46,7 +35,8 @@ void printStat(const DiskStore& store, Console& console) {
   const DiskStoreStats stats = store.stats();
   console.out << "cache in " << shownPath(store.directory()) << '\n'
               << fmt::format("  values   {:>9}  {}\n", stats.objects, sizeText(stats.objectBytes))
-              << fmt::format("  results  {:>9}  {}\n", stats.records, sizeText(stats.recordBytes));
+              << fmt::format("  results  {:>9}  {}\n", stats.records, sizeText(stats.recordBytes))
+              << fmt::format("  {} of at most {}\n", sizeText(stats.bytes()), sizeText(stats.mostBytes));
 }
 
 int verify(DiskStore& store, Console& console) {
@@ -65,8 +55,8 @@ int act(const CacheOptions& options, std::uint64_t mostBytes, DiskStore& store, 
     printStat(store, console);
   } else if (options.action == "gc") {
     const std::uint64_t freed = store.collect(mostBytes);
-    console.out << "freed " << sizeText(freed) << "; " << sizeText(store.stats().objectBytes)
-                << " of values are left of at most " << sizeText(mostBytes) << '\n';
+    console.out << "freed " << sizeText(freed) << "; " << sizeText(store.stats().bytes())
+                << " are left of at most " << sizeText(mostBytes) << '\n';
   } else if (options.action == "verify") {
     return verify(store, console);
   } else {
@@ -79,42 +69,14 @@ int act(const CacheOptions& options, std::uint64_t mostBytes, DiskStore& store, 
 
 }  // namespace
 
-Result<std::uint64_t> parseSize(const std::string& text) {
-  const Error wrong{inQuotes(text) + " is no size",
-                    "write a number of bytes, or one with K, M, G or T, such as 500M or 2.5G", "--max",
-                    Error::Kind::Input};
-  double number = 0;
-  const char* end = text.data() + text.size();
-  const auto [rest, problem] = std::from_chars(text.data(), end, number);
-  if (problem != std::errc() || !(number >= 0)) return wrong;
-  std::string unit(rest, end);
-  for (const std::string suffix : {"iB", "B"})
-    if (unit.ends_with(suffix) && (unit.size() > suffix.size() || suffix == "B")) {
-      unit.resize(unit.size() - suffix.size());
-      break;
-    }
-  static const std::string kUnits = "KMGT";
-  if (unit.size() > 1) return wrong;
-  if (!unit.empty()) {
-    const std::size_t power =
-        kUnits.find(static_cast<char>(std::toupper(static_cast<unsigned char>(unit[0]))));
-    if (power == std::string::npos) return wrong;
-    for (std::size_t i = 0; i <= power; ++i) number *= 1024;
-  }
-  if (number > 9e18) return wrong;
-  return static_cast<std::uint64_t>(number);
-}
-
 int cacheVerb(const CacheOptions& options, const Environment& environment, Console& console) {
   if (std::find(kActions.begin(), kActions.end(), options.action) == kActions.end())
     return refuse(unknownAction(options.action), console, kWrongInput);
   DiskStoreOptions storeOptions;
   storeOptions.onWarning = [&](const std::string& text) { console.err << "warning: " << text << '\n'; };
-  if (!options.max.empty()) {
-    const auto most = parseSize(options.max);
-    if (!most.ok()) return refuse(most.error(), console, kWrongInput);
-    storeOptions.mostBytes = *most;
-  }
+  const auto most = cacheSize(options.max, "--max", environment);
+  if (!most.ok()) return refuse(most.error(), console, kWrongInput);
+  storeOptions.mostBytes = *most;
   std::string directory = options.directory;
   if (directory.empty()) directory = DiskStore::defaultDirectory(environment.variable);
   if (directory.empty())
@@ -130,10 +92,9 @@ int cacheVerb(const CacheOptions& options, const Environment& environment, Conso
     console.out << "there is no cache in " << shownPath(directory) << '\n';
     return kOk;
   }
-  const std::uint64_t mostBytes = storeOptions.mostBytes;
   const auto store = DiskStore::open(directory, std::move(storeOptions));
   if (!store.ok()) return refuse(store.error(), console, kWrongInput);
-  return act(options, mostBytes, **store, console);
+  return act(options, *most, **store, console);
 }
 
 }  // namespace sherd

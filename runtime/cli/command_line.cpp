@@ -66,6 +66,7 @@ struct Commands {
   /// What the verbs that open graphs have in common.
   static void addShots(CLI::App& verb, ShotOptions& options) {
     verb.add_option("GRAPH", options.graphs, "graph files, directories of them, or patterns with * and ?")
+        ->type_name("")
         ->required();
     addRepeated(verb, "--set", options.sets, "NODE.PARAM=VALUE", "set a parameter");
     addRepeated(verb, "--var", options.vars, "NAME=VALUE", "set a variable of the graph");
@@ -75,19 +76,33 @@ struct Commands {
                 "allow the graph to write there, besides its own folder");
   }
   static void addEvaluation(CLI::App& verb, ShotOptions& options) {
-    auto* target = verb.add_option("--target", options.target, "only what this target of the graph names");
-    verb.add_option("--to", options.to, "only this node and what it needs")->excludes(target);
+    auto* target = verb.add_option("--target", options.target, "only what this target of the graph names")
+                       ->type_name("TARGET");
+    verb.add_option("--to", options.to, "only this node and what it needs")
+        ->type_name("NODE")
+        ->excludes(target);
     auto* cache =
-        verb.add_option("--cache", options.cache, "where results are kept between runs")->type_name("DIR");
-    verb.add_flag("--no-cache", options.noCache, "look up nothing and keep nothing")->excludes(cache);
+        verb.add_option(
+                "--cache", options.cache,
+                "where results are kept between runs; otherwise $SHERD_CACHE, $XDG_CACHE_HOME/sherd or "
+                "~/.cache/sherd")
+            ->type_name("DIR");
+    auto* size =
+        verb.add_option("--cache-size", options.cacheSize,
+                        "how large the cache may be, such as 500M; otherwise $SHERD_CACHE_SIZE or 10G")
+            ->type_name("SIZE");
+    verb.add_flag("--no-cache", options.noCache, "look up nothing and keep nothing")
+        ->excludes(cache)
+        ->excludes(size);
   }
 
   void addRun() {
     runApp = app.add_subcommand("run", "evaluate graphs");
     addShots(*runApp, run);
     addEvaluation(*runApp, run);
-    runApp->add_option("--threads", threads, "threads to use; 0: all of the machine's")
-        ->check(CLI::Range(0, 1024));
+    runApp->add_option("--threads", threads, "threads to use, up to 1024; 0: all of the machine's")
+        ->type_name("NUMBER")
+        ->check(CLI::Range(0, 1024).description(""));
     runApp->add_flag("--keep-going", run.keepGoing, "after a failure, go on with what doesn't depend on it");
     runApp->add_flag("--json", run.json, "print one JSON object a line");
     runApp->add_flag("--quiet", run.quiet, "print warnings and errors only");
@@ -120,14 +135,14 @@ struct Commands {
 
   void addFmt() {
     fmtApp = app.add_subcommand("fmt", "lay out graph files, showing what changes");
-    fmtApp->add_option("GRAPH", fmt.files, "graph files")->required();
+    fmtApp->add_option("GRAPH", fmt.files, "graph files")->type_name("")->required();
     auto* check = fmtApp->add_flag("--check", fmt.check, "end with exit code 1 if anything would change");
     fmtApp->add_flag("--write", fmt.write, "write the changes that are shown")->excludes(check);
   }
 
   void addUpgrade() {
     upgradeApp = app.add_subcommand("upgrade", "rewrite nodes of older versions, showing what changes");
-    upgradeApp->add_option("GRAPH", upgrade.files, "graph files")->required();
+    upgradeApp->add_option("GRAPH", upgrade.files, "graph files")->type_name("")->required();
     upgradeApp->add_flag("--write", upgrade.write, "write the changes that are shown");
   }
 
@@ -140,7 +155,9 @@ struct Commands {
         ->add_option("--cache", cache.directory,
                      "the cache's directory; otherwise $SHERD_CACHE, $XDG_CACHE_HOME/sherd or ~/.cache/sherd")
         ->type_name("DIR");
-    cacheApp->add_option("--max", cache.max, "what gc leaves at most, such as 500M; otherwise 10G")
+    cacheApp
+        ->add_option("--max", cache.max,
+                     "what gc leaves at most, such as 500M; otherwise $SHERD_CACHE_SIZE or 10G")
         ->type_name("SIZE");
   }
 };

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/atomic_file.h"
+#include "base/partial_file.h"
 #include "cli/command_line.h"
 
 namespace {

@@ -17,6 +17,7 @@ struct Fold {
   const PlanEntry* first = nullptr;
   std::vector<std::int64_t> frames;
   std::string wedge;
+  double ms = 0;  ///< of all of them
 };
 
 std::string wedgeText(const Graph::Context& context) {
@@ -35,10 +36,9 @@ std::string stateText(const PlanEntry& entry) {
   return entry.state == PlanState::Follows ? "may run" : planStateName(entry.state);
 }
 
-std::string whyText(const PlanEntry& entry) {
-  std::string text = entry.why;
-  if (entry.state == PlanState::Run && entry.ms >= 1) text += ", about " + durationText(entry.ms);
-  return text;
+std::string whyText(const Fold& fold) {
+  const bool mayRun = fold.first->state == PlanState::Run || fold.first->state == PlanState::Follows;
+  return fold.first->why + (mayRun && fold.ms >= 1 ? ", about " + durationText(fold.ms) : "");
 }
 
 /// The node's lines, one for all frames that agree.
@@ -52,13 +52,14 @@ void addLines(const Graph& graph, std::vector<PlanEntry>::const_iterator begin,
     const std::string wedge = wedgeText(context);
     const auto [found, isNew] = index.emplace(stateText(*it) + '\n' + it->why + '\n' + wedge, folds.size());
     if (isNew) folds.push_back({&*it, {}, wedge});
+    folds[found->second].ms += it->ms;
     if (context.frame) folds[found->second].frames.push_back(*context.frame);
   }
   for (const Fold& fold : folds) {
     const Graph::Node& node = graph.nodes[static_cast<std::size_t>(fold.first->node)];
     const std::string shot = graph.shots[static_cast<std::size_t>(node.shot)];
     rows.push_back({(shot.empty() ? "" : shot + ": ") + node.name, node.type->name, whereText(fold),
-                    stateText(*fold.first), whyText(*fold.first)});
+                    stateText(*fold.first), whyText(fold)});
   }
 }
 
@@ -109,7 +110,7 @@ int planVerb(const PlanOptions& options, const Registry& registry, const Environ
     if (opened.ok())
       store = std::move(opened).value();
     else
-      diagnostics.add({}, "", opened.error());
+      diagnostics.add({}, opened.error().port, opened.error());
   }
   if (!diagnostics.empty()) {
     printDiagnostics(diagnostics, console.err);

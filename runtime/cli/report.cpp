@@ -6,9 +6,11 @@
 #include <filesystem>
 
 #include "base/atomic_file.h"
+#include "base/partial_file.h"
 #include "cli/console.h"
 #include "cli/report_assets.h"
 #include "cli/report_drawing.h"
+#include "cli/report_fold.h"
 #include "cli/report_groups.h"
 #include "cli/report_json.h"
 #include "cli/report_pictures.h"
@@ -52,6 +54,22 @@ std::string skipsLine(const ReportData& data) {
   return fmt::format("<p class=\"skips\">{} of {} did not run: {}.</p>\n", sum, data.nodes.size(), parts);
 }
 
+/// What is left out, so that nobody takes what is shown for all.
+std::string foldLine(const ReportGroups& grouped) {
+  std::size_t runs = 0;
+  for (const ReportGroup& group : grouped.groups) runs += group.all - group.runs.size();
+  if (grouped.leftOut + runs == 0) return {};
+  std::string what;
+  if (grouped.leftOut > 0)
+    what = fmt::format("{} of {} nodes", grouped.leftOut, grouped.leftOut + grouped.groups.size());
+  if (runs > 0)
+    what += fmt::format("{}{} frames and wedges", what.empty() ? "" : ", and of the others ", runs);
+  return fmt::format(
+      "<p class=\"skips\">Too much for one page: {} are counted, but not shown. What failed or took longest "
+      "is here.</p>\n",
+      what);
+}
+
 void addErrors(std::string& page, const ReportData& data, const ReportGroups& grouped) {
   std::string errors;
   for (std::size_t g = 0; g < grouped.groups.size(); ++g)
@@ -74,7 +92,7 @@ void addSummary(std::string& page, const ReportData& data, const ReportGroups& g
   for (const std::size_t s : {2u, 3u, 1u, 0u, 4u})
     page += fmt::format("<li{}>{}<b>{}</b></li>\n", counts[s] == 0 ? " class=\"none\"" : "",
                         word(s, kShownStates[s].name), counts[s]);
-  page += "</ul>\n" + skipsLine(data);
+  page += "</ul>\n" + skipsLine(data) + foldLine(grouped);
   addErrors(page, data, grouped);
   page += "</header>\n";
 }
@@ -107,7 +125,7 @@ void addRow(std::string& page, const ReportData& data, std::size_t number, const
       "<tr data-group=\"{}\"><td><button data-group=\"{}\"><b>{}</b></button></td><td>{}</td><td>{}</td>",
       number, number, htmlEscaped(node.name), htmlEscaped(node.type), word(group.state, group.stateText()));
   page += numberCell(group.ms, (group.ms > 0 ? durationText(group.ms) : "") + bar);
-  page += numberCell(static_cast<double>(group.runs.size()), fmt::format("{}", group.runs.size()));
+  page += numberCell(static_cast<double>(group.all), fmt::format("{}", group.all));
   page += numberCell(static_cast<double>(group.memoryBytes),
                      group.memoryBytes > 0 ? byteText(group.memoryBytes) : "");
   page += numberCell(static_cast<double>(group.cacheBytes),
@@ -153,7 +171,8 @@ void addPictures(std::string& page, const ReportData& data) {
 }  // namespace
 
 std::string reportPage(const ReportData& data) {
-  const ReportGroups grouped = groupNodes(data);
+  ReportGroups grouped = groupNodes(data);
+  foldReport(data, grouped);
   std::string page =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -174,7 +193,7 @@ Result<void> writeReport(const ReportData& data, const std::string& file) {
   const std::filesystem::path directory = std::filesystem::path(file).parent_path();
   if (!directory.empty()) SHERD_CHECK(makeDirectory(directory.string()));
   const auto written = writeFileAtomically(file, reportPage(data));
-  return written.ok() ? Result<void>{} : written.error();
+  return written.ok() ? removeAbandoned(file) : written.error();
 }
 
 }  // namespace sherd

@@ -57,7 +57,9 @@ struct ReportData {
 };
 
 /// The whole page, the same for the same data. Loads nothing from anywhere: style, script and pictures are in
-/// it. Texts from graphs and files are escaped. O((nodes + wires) log + bytes of the pictures).
+/// it. Texts from graphs and files are escaped. Of very large runs what matters most is shown, and the page
+/// says how much is not: it has at most 10 MB beside the pictures. O((nodes + wires) log + bytes of the
+/// pictures).
 std::string reportPage(const ReportData& data);
 /// Writes it, whole or not at all, and creates its directory where that is missing. The error says what is in
 /// the way.

@@ -71,7 +71,7 @@ std::string resultLine(const ReportGroup& group) {
 }
 
 std::string countMark(const ReportGroup& group) {
-  return group.runs.size() > 1 ? fmt::format("×{}", group.runs.size()) : std::string();
+  return group.all > 1 ? fmt::format("×{}", group.all) : std::string();
 }
 
 DrawnBox measure(const ReportNode& node, const ReportGroup& group,
@@ -82,7 +82,7 @@ DrawnBox measure(const ReportNode& node, const ReportGroup& group,
   for (const std::string& name : wiredParams)
     if (box.inputs.size() < kMostPorts) box.inputs.push_back({name, name + ": a parameter", true, 0});
   const double name = 48 + kNameEm * widthInEms(elided(node.name, kLongestName)) +
-                      (group.runs.size() > 1 ? 16 + kTextEm * widthInEms(countMark(group)) : 0);
+                      (group.all > 1 ? 16 + kTextEm * widthInEms(countMark(group)) : 0);
   const double text = 40 + kTextEm * (widthInEms(typeLine(node)) + 1.1 * widthInEms(resultLine(group)));
   box.width = std::max({kLeast, name, text, rowWidth(box.inputs), rowWidth(box.outputs)});
   box.height = kBody + (box.inputs.empty() ? 4 : kPortRow) + (box.outputs.empty() ? 4 : kPortRow);
@@ -131,7 +131,7 @@ void drawBox(std::string& svg, const DrawnBox& box, const LayoutPoint& corner, s
                  "<use href=\"#m-{}\" class=\"mark\" x=\"11\" y=\"{:.1f}\" width=\"18\" height=\"18\"/>"
                  "<text class=\"name\" x=\"36\" y=\"{:.1f}\">{}</text>",
                  state.style, top + 3, top + 17, htmlEscaped(elided(node.name, kLongestName)));
-  if (group.runs.size() > 1)
+  if (group.all > 1)
     fmt::format_to(to, "<text class=\"count\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", box.width - 12, top + 17,
                    countMark(group));
   fmt::format_to(to,

@@ -12,7 +12,7 @@ namespace sherd {
 std::string ReportGroup::stateText() const {
   std::string text;
   for (std::size_t s = 0; s < counts.size(); ++s) {
-    if (counts[s] == static_cast<int>(runs.size())) return kShownStates[s].name;
+    if (counts[s] == static_cast<int>(all)) return kShownStates[s].name;
     if (counts[s] > 0)
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", counts[s], kShownStates[s].name);
   }
@@ -39,6 +39,7 @@ ReportGroups groupNodes(const ReportData& data) {
     group.state = isNew ? state : std::min(group.state, state);
     ++group.counts[state];
     group.runs.push_back(static_cast<int>(n));
+    ++group.all;
     group.ms += node.ms;
     group.memoryBytes += node.memoryBytes;
     group.cacheBytes += node.cacheBytes;

@@ -22,7 +22,8 @@ inline constexpr std::array<ShownState, 5> kShownStates{{{"failed", "failed"},
 
 /// All frames and wedges of one node.
 struct ReportGroup {
-  std::vector<int> runs;  ///< entries of ReportData::nodes, in their order; never empty
+  std::vector<int> runs;  ///< those that are shown: entries of ReportData::nodes, in their order; never empty
+  std::size_t all = 0;    ///< how many there are, with those that are left out
   std::array<int, kShownStates.size()> counts{};
   std::size_t state = 0;  ///< entry of kShownStates
   double ms = 0;          ///< of all together
@@ -41,6 +42,8 @@ struct GroupWire {
 struct ReportGroups {
   std::vector<ReportGroup> groups;  ///< in the order of their first nodes
   std::vector<GroupWire> wires;
+  std::size_t leftOut =
+      0;  ///< nodes that are not among `groups`, since the page would be too large (report_fold.h)
 };
 
 /// Entry of kShownStates; a word that isn't there counts as "not needed".

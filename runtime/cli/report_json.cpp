@@ -68,6 +68,7 @@ Json groupJson(const ReportData& data, const ReportGroup& group) {
           {"cache", group.cacheBytes > 0 ? byteText(group.cacheBytes) : ""},
           {"inputs", portsJson(first.inputs)},
           {"outputs", portsJson(first.outputs)},
+          {"leftOut", group.all - group.runs.size()},
           {"runs", std::move(runs)}};
 }
 

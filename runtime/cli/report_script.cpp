@@ -73,8 +73,9 @@ const char* const kReportScript = R"js(
     if (rows.length) section("Ports", table(["", "port", "type", "wired to"], rows));
   }
   function showRuns(number, group, chosen) {
-    if (group.runs.length < 2) return;
-    section(group.runs.length + " frames and wedges", table(["", "state", "time", "why"], group.runs.map((run, i) => {
+    const all = group.runs.length + group.leftOut;
+    if (all < 2) return;
+    section(all + " frames and wedges", table(["", "state", "time", "why"], group.runs.map((run, i) => {
       const open = make("button", run.context || "all");
       open.dataset.group = number;
       open.dataset.run = i;
@@ -83,6 +84,7 @@ const char* const kReportScript = R"js(
       if (i === chosen) line.className = "chosen";
       return line;
     })));
+    if (group.leftOut) details.append(make("p", group.leftOut + " more are not shown: too much for one page", "soft"));
   }
 
   /// Scrolls the drawing, and not the page, until the box is in sight.
@@ -107,7 +109,7 @@ const char* const kReportScript = R"js(
     details.replaceChildren();
     details.append(make("h2", group.name), make("p", [make("code", group.type), group.graph ? make("span", " in " + group.graph, "soft") : ""]),
       make("p", group.help, "soft"));
-    const several = group.runs.length > 1;
+    const several = group.runs.length + group.leftOut > 1;
     details.append(facts([["state", several ? make("span", [word(run.state), run.context ? " in " + run.context : ""]) : word(run.state)],
       ["why", run.why], ["depends on", several ? "" : run.context], ["time", several && run.time ? run.time + " (of " + group.time + " in all)" : run.time],
       ["threads", run.threads ? String(run.threads) : ""], ["in memory", run.memory], ["in the cache", run.cache]]));

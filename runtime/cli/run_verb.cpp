@@ -104,7 +104,7 @@ int refuse(const Diagnostics& diagnostics, const RunOptions& options, Console& c
 
 int refuse(const Error& error, const RunOptions& options, Console& console) {
   Diagnostics diagnostics;
-  diagnostics.add({}, "", error);
+  diagnostics.add({}, error.port, error);
   return refuse(diagnostics, options, console);
 }
 

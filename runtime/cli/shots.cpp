@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "cli/cache_size.h"
 #include "cli/open_graph.h"
 #include "graph/subgraphs.h"
 #include "graph/suggest.h"
@@ -129,9 +130,11 @@ Result<std::unique_ptr<DiskStore>> openStore(const ShotOptions& options, const E
   const std::string directory =
       options.cache.empty() ? DiskStore::defaultDirectory(environment.variable) : options.cache;
   if (directory.empty()) return std::unique_ptr<DiskStore>();
-  auto store = DiskStore::open(directory, {.onWarning = [&err](const std::string& text) {
-                                 err << "warning: " << text << '\n' << std::flush;
-                               }});
+  SHERD_ASSIGN(const std::uint64_t mostBytes, cacheSize(options.cacheSize, "--cache-size", environment));
+  auto store =
+      DiskStore::open(directory, {.mostBytes = mostBytes, .onWarning = [&err](const std::string& text) {
+                                    err << "warning: " << text << '\n' << std::flush;
+                                  }});
   if (store.ok()) return std::move(store).value();
   if (!options.cache.empty()) return store.error();
   err << "warning: " << store.error().text() << "; going on without a cache\n";

@@ -22,6 +22,7 @@ struct ShotOptions {
   std::optional<std::string> frames;
   std::vector<std::string> allowWrite;  ///< directories that may be written into besides the graph's own
   std::string cache;                    ///< directory; empty: the default one
+  std::string cacheSize;                ///< its bound, as cacheSize() takes it
   bool noCache = false;
 };
 

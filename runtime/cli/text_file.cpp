@@ -5,6 +5,7 @@
 
 #include "base/atomic_file.h"
 #include "base/line_diff.h"
+#include "base/partial_file.h"
 #include "graph/graph_file.h"
 
 namespace sherd {
@@ -31,10 +32,11 @@ void changeTextFile(const TextFile& file, const std::string& text, bool write, C
   if (!write) return;
   console.out.flush();
   const auto written = writeFileAtomically(file.path, text);
-  if (written.ok())
+  const Result<void> cleaned = written.ok() ? removeAbandoned(file.path) : Result<void>(written.error());
+  if (cleaned.ok())
     console.out << "wrote " << file.source->name << '\n';
   else
-    diagnostics.add({file.source, 0, 0}, "", written.error());
+    diagnostics.add({file.source, 0, 0}, "", cleaned.error());
 }
 
 }  // namespace sherd

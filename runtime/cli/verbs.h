@@ -1,7 +1,6 @@
 // The program's verbs. Each returns the exit code and prints only to its console.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -55,12 +54,9 @@ int upgradeVerb(const UpgradeOptions& options, const Registry& registry, Console
 struct CacheOptions {
   std::string action;     ///< stat, gc, verify or clear
   std::string directory;  ///< empty: DiskStore::defaultDirectory
-  std::string max;        ///< of gc, as parseSize takes it; empty: DiskStoreOptions::mostBytes
+  std::string max;        ///< of gc, as cacheSize takes it
 };
 /// A directory that doesn't exist is an empty cache, and isn't made.
 int cacheVerb(const CacheOptions& options, const Environment& environment, Console& console);
-
-/// "1000", "64K", "500M", "2.5G", "1T", also with "B" or "iB" behind: bytes, by powers of 1024.
-Result<std::uint64_t> parseSize(const std::string& text);
 
 }  // namespace sherd

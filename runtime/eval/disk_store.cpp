@@ -73,6 +73,7 @@ struct DiskStore::Impl {
 
   std::shared_ptr<const void> load(const ValueType& type, const Digest& digest);
   bool save(const ValueType& type, const std::shared_ptr<const void>& data, const Digest& digest, double ms);
+  bool hasTooManyRecords() const;
   std::uint64_t collect(std::uint64_t most);
 
   store::Directory directory;
@@ -122,13 +123,16 @@ bool DiskStore::Impl::save(const ValueType& type, const std::shared_ptr<const vo
   return written > 0;
 }
 
+bool DiskStore::Impl::hasTooManyRecords() const { return records.bytesOnDisk() > mostBytes / kRecordShare; }
+
 std::uint64_t DiskStore::Impl::collect(std::uint64_t most) {
   savedBytes = 0;
-  std::uint64_t freed = directory.sweep() + objects.evict(most) + histories.evict(most / kHistoryShare);
+  std::uint64_t freed = directory.sweep() + histories.evict(most / kHistoryShare);
   const std::uint64_t mostOfRecords = most / kRecordShare;
   records.flush();
   freed += records.merge(mostOfRecords, records.bytesOnDisk() > mostOfRecords);
-  return freed;
+  const std::uint64_t others = records.bytesOnDisk() + histories.bytesOnDisk();
+  return freed + objects.evict(most - std::min(others, most));
 }
 
 Result<std::unique_ptr<DiskStore>> DiskStore::open(const std::string& directory, DiskStoreOptions options) {
@@ -147,7 +151,7 @@ DiskStore::DiskStore(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 DiskStore::~DiskStore() {
   impl_->records.close();
-  if (impl_->savedBytes > 0)
+  if (impl_->savedBytes > 0 || impl_->hasTooManyRecords())
     impl_->collect(impl_->mostBytes);
   else
     impl_->records.merge(impl_->mostBytes / kRecordShare, false);
@@ -195,7 +199,7 @@ bool DiskStore::save(const Value& value, const Digest& digest, double ms) {
     impl_->directory.warn("a " + value.type().name + " is not kept in the cache: " + caught());
   }
   // A run of days must not outgrow the bound until its end.
-  if (impl_->savedBytes > impl_->mostBytes / 8 + (std::uint64_t{1} << 20)) impl_->collect(impl_->mostBytes);
+  if (impl_->savedBytes > impl_->mostBytes / 8 + (std::uint64_t{64} << 10)) impl_->collect(impl_->mostBytes);
   return kept;
 }
 
@@ -231,6 +235,7 @@ DiskStoreStats DiskStore::stats() const {
   }
   stats.records = impl_->records.count();
   stats.recordBytes = impl_->records.bytesOnDisk();
+  stats.historyBytes = impl_->histories.bytesOnDisk();
   return stats;
 }
 

@@ -36,7 +36,8 @@
 namespace sherd {
 
 struct DiskStoreOptions {
-  std::uint64_t mostBytes = std::uint64_t{10} << 30;  ///< of objects; records are bounded by a tenth of it
+  static constexpr std::uint64_t kMostBytes = std::uint64_t{10} << 30;
+  std::uint64_t mostBytes = kMostBytes;  ///< of all that is kept; passed only while a process is writing
   /// Told once when the store turns out not to be writable, and of each value that can't be saved or loaded
   /// because its type throws or the memory doesn't suffice; from any thread, and not to call the store.
   std::function<void(const std::string&)> onWarning;
@@ -45,7 +46,10 @@ struct DiskStoreOptions {
 struct DiskStoreStats {
   std::uint64_t objects = 0, objectBytes = 0;
   std::uint64_t records = 0, recordBytes = 0;
+  std::uint64_t historyBytes = 0;
   std::uint64_t mostBytes = 0;
+
+  std::uint64_t bytes() const { return objectBytes + recordBytes + historyBytes; }
 };
 
 class DiskStore {
@@ -97,11 +101,11 @@ class DiskStore {
 
   /// Appends what is gathered.
   void flush();
-  /// Evicts until the objects fit into `mostBytes`, first those of the least time to make again per byte,
-  /// which counts half after every two days without use (GreedyDual-Size, with the clock for its rising bar).
-  /// Parts are objects like others: what refers to one that went is a miss. Drops the oldest records beyond a
-  /// tenth of mostBytes and history beyond a hundredth; removes what killed processes left behind; merges
-  /// segments. Returns the bytes freed.
+  /// Evicts until all fits into `mostBytes`. Of history at most a hundredth of that stays, the newest, and of
+  /// records a tenth; the rest is for objects. What takes the least time to make again per byte goes first,
+  /// time counting half after every two days without use (worth.h). Parts are objects like others: what
+  /// refers to one that went is a miss. Also removes what killed processes left behind, and merges segments;
+  /// those that another process is writing stay. Returns the bytes freed.
   std::uint64_t collect(std::uint64_t mostBytes);
   /// O(objects + records).
   DiskStoreStats stats() const;

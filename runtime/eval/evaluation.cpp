@@ -64,6 +64,15 @@ void Evaluation::connect() {
     if (slot(i).wanted && options_.values) ++slot(i).readers;
 }
 
+/// Whether the key of another node needs the value of this output, and not only its digest.
+bool Evaluation::namesFile(int i, int output) {
+  bool names = false;
+  forEachReader(i, [&](const Reader& reader) {
+    names = names || (reader.output == output && reader.isParam && node(reader.node).wiredFiles);
+  });
+  return names;
+}
+
 /// Finds out what is known, from the sources on; what is not starts the rest.
 void Evaluation::sweep() {
   sweeping_ = true;
@@ -114,8 +123,37 @@ void Evaluation::drain() {
 void Evaluation::resolve(int i) {
   Slot& s = slot(i);
   if (s.state != State::Waiting) return;
-  if (node(i).wiredFiles) return countNames(i);
-  look(i, node(i).params);
+  if (!node(i).wiredFiles) return look(i, node(i).params);
+  // Found out in the nodes' order as far as that can be, so that it doesn't depend on the time which of those
+  // that turn out to have one key runs.
+  const auto names = sweeping_ ? namesAtHand(i) : std::nullopt;
+  if (names)
+    lookWith(i, *names);
+  else
+    countNames(i);
+}
+
+/// What comes over the wires to parameters, from memory or disk; nothing where something isn't there.
+std::optional<std::vector<WireValue>> Evaluation::namesAtHand(int i) {
+  std::vector<WireValue> values = gather(node(i).wiredParams);
+  for (std::size_t w = 0; w < values.size(); ++w) {
+    WireValue& wired = values[w];
+    const Graph::Wire& wire = node(i).wiredParams[w];
+    if (!wired.value.empty() || wired.digest == Digest{}) continue;
+    if (options_.disk == nullptr) return std::nullopt;
+    const auto output = static_cast<std::size_t>(wire.output);
+    wired.value = options_.disk->load(*node(wire.node).type->outputs[output].value, wired.digest);
+    if (wired.value.empty()) return std::nullopt;
+  }
+  return values;
+}
+
+void Evaluation::lookWith(int i, const std::vector<WireValue>& wired) {
+  const auto params = finalParams(node(i), wired);
+  if (params.ok())
+    look(i, *params);
+  else
+    fail(i, params.error());
 }
 
 /// Makes the key and looks it up.
@@ -127,6 +165,7 @@ void Evaluation::look(int i, const ParamValues& params) {
     const auto recipe = recipeWithFiles(n, params, files_);
     if (!recipe.ok()) return fail(i, recipe.error());
     s.recipe = *recipe;
+    if (n.wiredFiles) s.report.wiredFiles = wiredFilesOf(n, params);
   }
   keyInputs_.clear();
   forEachWire(n, [&](const Graph::Wire& wire, bool isParam) {
@@ -136,7 +175,7 @@ void Evaluation::look(int i, const ParamValues& params) {
   });
   s.key = resultKey(s.recipe, keyInputs_);
   s.report.key = s.key;
-  if (auto known = lookUp(*n.type, s.key, cache_, options_.disk))
+  if (auto known = lookUp(*n.type, s.key, {cache_, options_.disk, abandoned_}))
     becomeKnown(i, std::move(*known));
   else
     mustRun(i);

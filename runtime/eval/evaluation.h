@@ -82,12 +82,16 @@ class Evaluation {
   void sweep();
   void finalise();
 
+  bool namesFile(int i, int output);
+
   // What follows from what; under mutex_. Chains are followed by the lists of things to do, never by
   // recursion.
   void drain();
   void resolve(int i);
   void look(int i, const ParamValues& params);
   void mustRun(int i);
+  std::optional<std::vector<WireValue>> namesAtHand(int i);
+  void lookWith(int i, const std::vector<WireValue>& wired);
   void countNames(int i);
   void countValues(int i);
   void ask(int i, int output);
@@ -110,7 +114,8 @@ class Evaluation {
   std::optional<NodeResult> attempt(int i);
   void run(int i);
   void conclude(int i, const NodeResult& result, double ms, const ResultRecord& record, bool later);
-  std::uint64_t keep(const ResultRecord& record, const Outputs& outputs);
+  bool isKept(int i, const ResultRecord& record, std::size_t output);
+  std::uint64_t keep(int i, const ResultRecord& record, const Outputs& outputs);
   std::vector<WireValue> gather(const std::vector<Graph::Wire>& wires);
   ResultRecord recordOf(int i, const NodeResult& result, double ms) const;
   void warnOfDifference(int i, NodeResult& result);
@@ -124,6 +129,7 @@ class Evaluation {
   const EvalOptions options_;
   EvalListener* const listener_;
   FileDigests files_;
+  AbandonedFiles abandoned_;
   TaskGroup* group_ = nullptr;
 
   std::vector<int> order_;        ///< needed nodes, sources first

@@ -99,11 +99,7 @@ void Evaluation::doJob(Job job) {
     if (token_.cancelled() || (isRun && state != State::NeedsValues && state != State::NeedsNames)) return;
     slot(job.node).started = slot(job.node).started || (isRun && state == State::NeedsValues);
     if (job.output == Job::kRun && state == State::NeedsNames) {
-      const auto params = finalParams(node(job.node), gather(node(job.node).wiredParams));
-      if (params.ok())
-        look(job.node, *params);
-      else
-        fail(job.node, params.error());
+      lookWith(job.node, gather(node(job.node).wiredParams));
       drain();
       reports.swap(outbox_);
       job.node = -1;
@@ -212,17 +208,14 @@ void Evaluation::run(int i) {
   const double ms = msSince(start);
   if (result->error) return conclude(i, *result, ms, {}, false);
   const ResultRecord record = recordOf(i, *result, ms);
-  const bool isKept =
-      options_.disk != nullptr &&
-      std::any_of(record.outputs.begin(), record.outputs.end(), [&](const OutputRecord& output) {
-        return !output.empty() && worthKeeping(ms, output.bytes);
-      });
+  bool anyKept = false;
+  for (std::size_t o = 0; o < record.outputs.size() && !anyKept; ++o) anyKept = isKept(i, record, o);
   cache_.insert({result->outputs, record});  // before anybody may look for this key again
-  if (options_.disk != nullptr && !isKept) options_.disk->record(record);
-  conclude(i, *result, ms, record, isKept);
-  if (!isKept) return;
+  if (options_.disk != nullptr && !anyKept) options_.disk->record(record);
+  conclude(i, *result, ms, record, anyKept);
+  if (!anyKept) return;
   dispatch();  // what waited for this starts while this is written
-  const std::uint64_t kept = keep(record, result->outputs);
+  const std::uint64_t kept = keep(i, record, result->outputs);
   std::vector<const NodeReport*> reports;
   {
     const std::lock_guard lock(mutex_);
@@ -261,12 +254,18 @@ void Evaluation::conclude(int i, const NodeResult& result, double ms, const Resu
   tellReports(std::move(reports));
 }
 
+/// Names of files are kept whatever that costs: without them no key of their reader is known.
+bool Evaluation::isKept(int i, const ResultRecord& record, std::size_t output) {
+  const OutputRecord& made = record.outputs[output];
+  return options_.disk != nullptr && !made.empty() &&
+         (worthKeeping(record.ms, made.bytes) || namesFile(i, static_cast<int>(output)));
+}
+
 /// Objects first: a record promises them.
-std::uint64_t Evaluation::keep(const ResultRecord& record, const Outputs& outputs) {
+std::uint64_t Evaluation::keep(int i, const ResultRecord& record, const Outputs& outputs) {
   std::uint64_t kept = 0;
   for (std::size_t o = 0; o < outputs.size(); ++o)
-    if (!outputs[o].value.empty() && worthKeeping(record.ms, record.outputs[o].bytes) &&
-        options_.disk->save(outputs[o].value, outputs[o].digest, record.ms))
+    if (isKept(i, record, o) && options_.disk->save(outputs[o].value, outputs[o].digest, record.ms))
       kept += record.outputs[o].bytes;
   options_.disk->record(record);
   return kept;

@@ -43,6 +43,8 @@ struct NodeReport {
   Digest key;                   ///< zero where it never came to be known
   std::vector<Digest> digests;  ///< of the outputs, in their order, where they are known
   std::vector<Message> messages;
+  /// Parameters whose names of files came over wires, with these names.
+  std::vector<std::pair<std::string, std::string>> wiredFiles;
   std::vector<std::string> written;  ///< files, by absolute path; of a hit those that are still there
   std::optional<Error> error;        ///< of a failed node
 };

@@ -38,22 +38,28 @@ std::string sourceName(const Graph& graph, int reader, int source) {
 }
 
 PastNode describe(const Graph& graph, int i, const std::vector<std::vector<Digest>>& digests,
-                  FileDigests& files) {
+                  const WiredFiles& wiredFiles, FileDigests& files) {
   const Graph::Node& node = graph.nodes[static_cast<std::size_t>(i)];
   const NodeType& type = *node.type;
   PastNode past;
   past.type = typeText(type);
+  const auto addFile = [&](const std::string& param, const std::string& path) {
+    const auto content = files.of(path);
+    past.files.push_back({param, path, content.ok() ? *content : Digest{}});
+  };
   std::vector<bool> wired(type.params.size(), false);
   for (const Graph::Wire& wire : node.wiredParams) wired[static_cast<std::size_t>(wire.to)] = true;
   for (std::size_t p = 0; p < type.params.size(); ++p) {
     const ParamInfo& info = type.params[p];
-    if (wired[p]) continue;
+    if (wired[p]) {
+      for (const auto& [param, path] : wiredFiles)
+        if (param == info.name) addFile(param, path);
+      continue;
+    }
     const ParamValue& value = node.params.at(info.name);
     if (value != info.fallback) past.params.emplace_back(info.name, paramText(value));
     const std::string* path = info.kind == ParamKind::InputFile ? std::get_if<std::string>(&value) : nullptr;
-    if (path == nullptr || path->empty()) continue;
-    const auto content = files.of(*path);
-    past.files.push_back({info.name, *path, content.ok() ? *content : Digest{}});
+    if (path != nullptr && !path->empty()) addFile(info.name, *path);
   }
   forEachWire(node, [&](const Graph::Wire& wire, bool isParam) {
     const auto place = static_cast<std::size_t>(wire.to);
@@ -73,7 +79,7 @@ void update(History& history, const Graph& graph, int shot, const EvalReport& re
     if (node.state != NodeState::Run && node.state != NodeState::Hit) continue;
     if (graph.nodes[static_cast<std::size_t>(node.node)].shot != shot) continue;
     PastNode& past = history[graph.labelOf(node.node)];
-    past = describe(graph, node.node, digests, files);
+    past = describe(graph, node.node, digests, node.wiredFiles, files);
     past.key = node.key;
   }
   std::set<std::string, std::less<>> names;

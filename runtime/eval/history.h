@@ -35,9 +35,9 @@ using History = std::map<std::string, PastNode, std::less<>>;  ///< by Graph::la
 std::string sourceName(const Graph& graph, int reader, int source);
 
 /// What a node is made of now. `digests` are the outputs of all nodes, empty where they aren't known; files
-/// that can't be read have a digest of zero.
+/// that can't be read have a digest of zero. `wiredFiles` are those of this node, as far as they are known.
 PastNode describe(const Graph& graph, int node, const std::vector<std::vector<Digest>>& digests,
-                  FileDigests& files);
+                  const WiredFiles& wiredFiles, FileDigests& files);
 
 /// Brings the history of one shot up to date with what ran and what was a hit; nodes that weren't needed keep
 /// their entries as long as the graph has nodes of their names.

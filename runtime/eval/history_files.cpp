@@ -85,6 +85,13 @@ std::uint64_t HistoryFiles::evict(std::uint64_t mostBytes) {
   return freed;
 }
 
+std::uint64_t HistoryFiles::bytesOnDisk() const {
+  std::uint64_t bytes = 0;
+  for (const std::string& name : namesIn(directory_.at("history")))
+    if (isName(name)) bytes += fileBytes(directory_.at("history/" + name));
+  return bytes;
+}
+
 std::vector<std::string> HistoryFiles::verify() {
   std::vector<std::string> lines;
   for (const std::string& name : namesIn(directory_.at("history"))) {

@@ -17,6 +17,7 @@ class HistoryFiles {
   /// Empty where there is none; an unsound one is deleted.
   std::string read(const std::string& name);
   void write(const std::string& name, std::string_view content);
+  std::uint64_t bytesOnDisk() const;
   /// Deletes the oldest beyond mostBytes. Returns the bytes freed.
   std::uint64_t evict(std::uint64_t mostBytes);
   /// Reads all, deletes what is unsound, and returns a line for each.

@@ -68,6 +68,17 @@ Result<Digest> recipeWithFiles(const Graph::Node& node, const ParamValues& param
   return hasher.digest();
 }
 
+WiredFiles wiredFilesOf(const Graph::Node& node, const ParamValues& params) {
+  WiredFiles files;
+  for (const Graph::Wire& wire : node.wiredParams) {
+    const ParamInfo& info = node.type->params[static_cast<std::size_t>(wire.to)];
+    const std::string* path =
+        info.kind == ParamKind::InputFile ? std::get_if<std::string>(&params.at(info.name)) : nullptr;
+    if (path != nullptr && !path->empty()) files.emplace_back(info.name, *path);
+  }
+  return files;
+}
+
 Digest resultKey(const Digest& recipe, std::span<const KeyInput> inputs) {
   return digestOf(recipe, std::as_bytes(inputs));
 }

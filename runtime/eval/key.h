@@ -5,6 +5,8 @@
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "base/hash.h"
 #include "base/result.h"
@@ -34,6 +36,10 @@ Result<Digest> digestOfFile(const std::string& path);
 /// The node's recipe with the content and name (readers go by its ending) of the files that `params` name.
 /// The Error's port is the parameter.
 Result<Digest> recipeWithFiles(const Graph::Node& node, const ParamValues& params, FileDigests& files);
+
+/// Parameters whose names of files came over wires, with these names.
+using WiredFiles = std::vector<std::pair<std::string, std::string>>;
+WiredFiles wiredFilesOf(const Graph::Node& node, const ParamValues& params);
 
 /// Something that came over a wire, as far as a key is concerned.
 struct KeyInput {

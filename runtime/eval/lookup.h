@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "base/partial_file.h"
 #include "eval/cache.h"
 #include "eval/disk_store.h"
 #include "graph/node_type.h"
@@ -15,12 +16,19 @@ struct Known {
   ResultRecord record;
 };
 
+/// Where results, and what became of the files that they wrote, are looked for.
+struct Places {
+  Cache& cache;
+  const DiskStore* disk;  ///< null: none
+  AbandonedFiles& abandoned;
+};
+
 /// Nothing where no result is known, where the record doesn't fit the type's outputs, or where a file that
 /// the node wrote is missing or has been changed (firstChanged).
-std::optional<Known> lookUp(const NodeType& type, const Digest& key, Cache& cache, const DiskStore* disk);
+std::optional<Known> lookUp(const NodeType& type, const Digest& key, const Places& places);
 
 /// The first of the files that is not as it was written, or beside which a killed run left a half-written
 /// one; null where there is none.
-const WrittenFile* firstChanged(const ResultRecord& record);
+const WrittenFile* firstChanged(const ResultRecord& record, AbandonedFiles& abandoned);
 
 }  // namespace sherd

@@ -11,6 +11,8 @@
 #include <cstring>
 #include <ctime>
 
+#include "eval/worth.h"
+
 namespace sherd::store {
 namespace {
 
@@ -179,24 +181,25 @@ std::uint64_t ObjectFiles::evict(std::uint64_t mostBytes) {
   for (const ObjectFile& file : files) left += file.bytes;
   if (left <= mostBytes) return 0;
   struct Candidate {
-    double worth;  ///< log2 of the time to make it again per byte, less the half-lives since its use
+    double worth;
     const ObjectFile* file;
   };
   std::vector<Candidate> candidates;
   candidates.reserve(files.size());
   for (const ObjectFile& file : files) {
-    const double density = (costOf(file.path) + 1e-3) / static_cast<double>(file.bytes + 1);
-    candidates.push_back({std::log2(density) - file.unused / kHalfLife, &file});
+    candidates.push_back({worth(costOf(file.path), file.bytes, file.unused), &file});
   }
   std::sort(candidates.begin(), candidates.end(),
             [](const Candidate& a, const Candidate& b) { return a.worth < b.worth; });
-  for (const auto& [worth, file] : candidates) {
-    if (left <= mostBytes) break;
-    if (::unlink(file->path.c_str()) == 0)
-      freed += file->bytes;
-    else if (errno != ENOENT)
-      continue;
-    left -= file->bytes;
+  std::size_t last = 0;
+  for (; last < candidates.size() && left > mostBytes; ++last) left -= candidates[last].file->bytes;
+  // The last of them may have been far larger than what was missing: what fits in its place stays.
+  for (; last > 0; --last) {
+    const ObjectFile& file = *candidates[last - 1].file;
+    if (left + file.bytes <= mostBytes)
+      left += file.bytes;
+    else if (::unlink(file.path.c_str()) == 0)
+      freed += file.bytes;
   }
   return freed;
 }

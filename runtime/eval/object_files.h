@@ -44,9 +44,7 @@ class ObjectFiles {
 
   /// Everything in the folder, in no order. O(files).
   std::vector<ObjectFile> list() const;
-  /// Deletes until no more than mostBytes are left. What is kept longest: what took long to make for its
-  /// size, halved for every kHalfLife seconds without use. Returns the bytes freed.
-  static constexpr double kHalfLife = 2 * 86400.0;
+  /// Deletes those of the least worth() until no more than mostBytes are left. Returns the bytes freed.
   std::uint64_t evict(std::uint64_t mostBytes);
   /// Reads all, deletes what is unsound, and returns a line for each.
   std::vector<std::string> verify();

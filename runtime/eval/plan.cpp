@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "eval/lookup.h"
+#include "eval/node_run.h"
 #include "graph/instances.h"
 
 namespace sherd {
@@ -57,6 +58,7 @@ class Planner {
     std::uint64_t bytes = 0;
     std::vector<std::uint64_t> outputBytes;
     std::string why;
+    WiredFiles wiredFiles;
   };
 
   Slot& slot(int i) { return slots_[static_cast<std::size_t>(i)]; }
@@ -71,10 +73,13 @@ class Planner {
   void resolve(int i) {
     Slot& s = slot(i);
     const Graph::Node& n = node(i);
-    const auto recipe = n.wiredFiles ? Result<Digest>(n.recipe) : recipeWithFiles(n, n.params, files_);
+    const bool isReady = sourcesKnown(i);
+    const auto names = n.wiredFiles && isReady ? wiredValues(i) : std::nullopt;
+    if (n.wiredFiles && !names) return follow(i);
+    const auto recipe = recipeOf(i, names);
     s.recipe = recipe.ok() ? *recipe : Digest{};
     if (!recipe.ok()) return mustRun(i, recipe.error().what);
-    if (!sourcesKnown(i) || n.wiredFiles) return follow(i);
+    if (!isReady) return follow(i);
     std::vector<KeyInput> inputs;
     forEachWire(n, [&](const Graph::Wire& wire, bool isParam) {
       inputs.push_back({static_cast<std::uint64_t>(wire.to) + (isParam ? kKeyParam : 0),
@@ -82,7 +87,7 @@ class Planner {
                         slot(wire.node).outputs[static_cast<std::size_t>(wire.output)].digest});
     });
     s.key = resultKey(s.recipe, inputs);
-    if (auto found = lookUp(*n.type, s.key, cache_, options_.disk)) {
+    if (auto found = lookUp(*n.type, s.key, {cache_, options_.disk, abandoned_})) {
       s.known = true;
       s.outputs = std::move(found->outputs);
       s.ms = found->record.ms;
@@ -94,6 +99,29 @@ class Planner {
     } else {
       mustRun(i, {});
     }
+  }
+
+  /// What comes over the wires to parameters; nothing where a value of them isn't there.
+  std::optional<std::vector<WireValue>> wiredValues(int i) {
+    std::vector<WireValue> values;
+    for (const Graph::Wire& wire : node(i).wiredParams) {
+      const auto o = static_cast<std::size_t>(wire.output);
+      const Output& output = slot(wire.node).outputs[o];
+      Value value = output.value;
+      if (value.empty() && options_.disk != nullptr && output.digest != Digest{})
+        value = options_.disk->load(*node(wire.node).type->outputs[o].value, output.digest);
+      if (value.empty() && output.digest != Digest{}) return std::nullopt;
+      values.push_back({std::move(value), output.digest});
+    }
+    return values;
+  }
+
+  /// `wired` is what names files among its parameters, if anything does.
+  Result<Digest> recipeOf(int i, const std::optional<std::vector<WireValue>>& wired) {
+    if (!wired) return recipeWithFiles(node(i), node(i).params, files_);
+    SHERD_ASSIGN(const ParamValues params, finalParams(node(i), *wired));
+    slot(i).wiredFiles = wiredFilesOf(node(i), params);
+    return recipeWithFiles(node(i), params, files_);
   }
 
   /// Its key isn't known yet. With a recipe that never ran, no key of it can be known.
@@ -150,30 +178,57 @@ class Planner {
     s.state = PlanState::Follows;
     s.why = why;
     following_.push_back(i);
+    // One of the same key that would run is a hit where this one comes before it.
+    const auto twin = running_.find(s.key);
+    if (twin == running_.end() || slot(twin->second).state != PlanState::Run) return;
+    slot(twin->second).state = PlanState::Follows;
+    slot(twin->second).why += (slot(twin->second).why.empty() ? "unless " : ", unless ") +
+                              sourceName(graph_, twin->second, i) + ", which is the same, does";
   }
 
   PlanEntry entryOf(int i) {
     Slot& s = slot(i);
     if (!s.needed) return {i, PlanState::NotNeeded, {}, 0, 0};
     PlanEntry entry{i, s.state, s.why, s.ms, s.bytes};
-    if (s.state != PlanState::Hit && entry.why.empty()) entry.why = explain(i);
+    if (s.state == PlanState::Hit) return entry;
+    if (entry.why.empty()) entry.why = explain(i);
+    if (entry.ms == 0) entry.ms = lastTime(i);
     return entry;
   }
 
-  std::string explain(int i) {
-    static const History kNone;
+  const PastNode* pastOf(int i) const {
     const auto shot = static_cast<std::size_t>(node(i).shot);
-    const History& history = shot < histories_.size() ? histories_[shot] : kNone;
-    const auto past = history.find(graph_.labelOf(i));
-    if (past == history.end()) return upstream(i).value_or("never run");
+    if (shot >= histories_.size()) return nullptr;
+    const auto past = histories_[shot].find(graph_.labelOf(i));
+    return past == histories_[shot].end() ? nullptr : &past->second;
+  }
+
+  /// What the node took when it was last run, with whatever it was made of then; 0 where that isn't known.
+  double lastTime(int i) const {
+    const PastNode* past = pastOf(i);
+    if (past == nullptr || options_.disk == nullptr) return 0;
+    const auto record = options_.disk->find(past->key);
+    return record ? record->ms : 0;
+  }
+
+  std::string explain(int i) {
+    const PastNode* past = pastOf(i);
+    if (past == nullptr) return upstream(i).value_or("never run");
     const std::string changed =
-        difference(past->second, describe(graph_, i, digests_, files_), *node(i).type);
+        difference(*past, describe(graph_, i, digests_, slot(i).wiredFiles, files_), *node(i).type);
     if (!changed.empty()) return changed;
     if (const auto source = upstream(i)) return *source;
     if (auto record = options_.disk == nullptr ? std::nullopt : options_.disk->find(slot(i).key))
-      if (const WrittenFile* file = firstChanged(*record))
-        return file->path + (FileIdentity::of(file->path).exists() ? " has been changed" : " is missing");
+      if (const WrittenFile* file = firstChanged(*record, abandoned_))
+        return file->path + whatBecameOf(*file);
     return "its record was evicted";
+  }
+
+  /// Of the file that firstChanged() found.
+  static std::string whatBecameOf(const WrittenFile& file) {
+    const FileIdentity now = FileIdentity::of(file.path);
+    if (!now.exists()) return " is missing";
+    return now == file.identity ? " was being written when a run was killed" : " has been changed";
   }
 
   /// The first of its sources that doesn't stay as it is.
@@ -191,6 +246,7 @@ class Planner {
   const EvalOptions& options_;
   const std::vector<History>& histories_;
   FileDigests files_;
+  AbandonedFiles abandoned_;
   std::vector<Slot> slots_;
   std::vector<std::vector<Digest>> digests_;
   std::vector<int> order_, place_, wanted_, toCount_, following_;

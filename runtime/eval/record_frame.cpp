@@ -1,5 +1,6 @@
 #include "eval/record_frame.h"
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -81,7 +82,7 @@ std::size_t frameSize(const ResultRecord& record) {
 void writeFrame(const ResultRecord& record, std::int64_t time, std::size_t size, char* to) {
   FrameHead head;
   head.size = static_cast<std::uint32_t>(size);
-  head.time = time;
+  head.time = head.used = time;
   head.outputs = static_cast<std::uint32_t>(record.outputs.size());
   head.messages = static_cast<std::uint32_t>(record.messages.size());
   head.written = static_cast<std::uint32_t>(record.written.size());
@@ -109,7 +110,7 @@ void writeFileFrame(const Digest& path, const FileIdentity& identity, const Dige
                     std::int64_t time, char* to) {
   FrameHead head;
   head.size = kFileFrameSize;
-  head.time = time;
+  head.time = head.used = time;
   head.kind = FrameKind::FileDigest;
   head.key = path;
   head.recipe = content;
@@ -117,6 +118,13 @@ void writeFileFrame(const Digest& path, const FileIdentity& identity, const Dige
   pen.put(&head, sizeof head);
   pen.put(&identity, sizeof identity);
   seal(to, kFileFrameSize);
+}
+
+void writeUsed(Frame frame, std::int64_t used, char* to) {
+  const std::size_t size = sizeOf(frame);
+  std::memcpy(to, frame, size);
+  std::memcpy(to + offsetof(FrameHead, used), &used, sizeof used);
+  seal(to, size);
 }
 
 std::size_t soundFrameAt(std::string_view bytes) {
@@ -173,6 +181,14 @@ FileIdentity readIdentity(Frame frame) {
   FileIdentity identity;
   std::memcpy(&identity, frame + sizeof(FrameHead), sizeof identity);
   return identity;
+}
+
+double costOf(Frame frame) {
+  constexpr double kBytesPerMs = 1e6;
+  if (kindOf(frame) == FrameKind::FileDigest)
+    return static_cast<double>(readIdentity(frame).bytes) / kBytesPerMs;
+  const double ms = headOf(frame).ms;
+  return ms > 0 && std::isfinite(ms) ? ms : 0;
 }
 
 }  // namespace sherd::store

@@ -21,13 +21,14 @@ struct FrameHead {
   std::uint32_t size = 0;      ///< of the whole frame
   std::uint64_t checksum = 0;  ///< of everything behind it, and of the size
   std::int64_t time = 0;       ///< of recording, ns since 1970
+  std::int64_t used = 0;       ///< when it was last used, to a day
   FrameKind kind = FrameKind::Result;
   std::uint32_t outputs = 0, messages = 0, written = 0;
   Digest key;     ///< of the result, or of the file's path
   Digest recipe;  ///< of the result, or the digest of the file's content
   double ms = 0;
 };
-static_assert(sizeof(FrameHead) == 80);
+static_assert(sizeof(FrameHead) == 88);
 static_assert(sizeof(OutputRecord) == 24 && sizeof(FileIdentity) == 40, "no padding: kept by their bytes");
 
 /// A pointer to the first byte of a sound frame.
@@ -53,6 +54,11 @@ inline std::int64_t timeOf(Frame frame) {
   std::memcpy(&time, frame + offsetof(FrameHead, time), sizeof time);
   return time;
 }
+inline std::int64_t usedOf(Frame frame) {
+  std::int64_t time;
+  std::memcpy(&time, frame + offsetof(FrameHead, used), sizeof time);
+  return time;
+}
 inline std::uint32_t sizeOf(Frame frame) {
   std::uint32_t size;
   std::memcpy(&size, frame + offsetof(FrameHead, size), sizeof size);
@@ -76,6 +82,9 @@ std::size_t frameSize(const ResultRecord& record);
 /// `to` has room for `size` = frameSize(record) bytes.
 void writeFrame(const ResultRecord& record, std::int64_t time, std::size_t size, char* to);
 
+/// Writes a copy, of the same time but used at `used`, to sizeOf(frame) bytes.
+void writeUsed(Frame frame, std::int64_t used, char* to);
+
 constexpr std::size_t kFileFrameSize = sizeof(FrameHead) + sizeof(FileIdentity);
 void writeFileFrame(const Digest& path, const FileIdentity& identity, const Digest& content,
                     std::int64_t time, char* to);
@@ -88,6 +97,8 @@ void readOutputs(Frame frame, std::vector<OutputRecord>& outputs);
 std::optional<ResultRecord> readResult(Frame frame);
 /// Only for frames of kind FileDigest.
 FileIdentity readIdentity(Frame frame);
+/// What finding it out again takes, in ms: the result's own time, or that of reading the file.
+double costOf(Frame frame);
 
 struct FrameScan {
   std::size_t end = 0;      ///< behind the last sound frame

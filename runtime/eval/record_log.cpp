@@ -74,6 +74,13 @@ void RecordLog::addFile(const Digest& path, const FileIdentity& identity, const 
   added(kFileFrameSize, false);
 }
 
+Frame RecordLog::markUsed(Frame frame) {
+  const std::size_t size = sizeOf(frame);
+  writeUsed(frame, now(), room(size));
+  added(size, false);
+  return chunk_ - size;
+}
+
 void RecordLog::appendPending() {
   const std::string_view batch(pending_, static_cast<std::size_t>(chunk_ - pending_));
   pending_ = chunk_;

@@ -30,12 +30,13 @@ class RecordLog {
   void refresh();
 
   /// Calls use(frame) with the newest frame of this key and returns its result; a default one where there is
-  /// none. The frame may be used only until `use` returns.
+  /// none. The frame may be used only until `use` returns. Marks it as used, at most once a day.
   template <class F>
-  auto find(const Digest& key, F&& use) const -> decltype(use(Frame{})) {
+  auto find(const Digest& key, F&& use) -> decltype(use(Frame{})) {
     const std::lock_guard lock(mutex_);
     const Frame frame = newest(key);
     if (frame == nullptr) return {};
+    if (usedOf(frame) + kDay < now()) return use(markUsed(frame));
     return use(frame);
   }
   bool knowsRecipe(const Digest& recipe) const;
@@ -48,8 +49,9 @@ class RecordLog {
   void close();
 
   /// Merges the segments that nobody holds where there are more than kMostSegments or kMostYoungBytes of
-  /// them, and deletes what isn't a segment; `all`: in any case, and all merged ones with them, dropping the
-  /// oldest records beyond `mostBytes`. Does nothing while another process merges. Returns the bytes freed.
+  /// them, and deletes what isn't a segment; `all`: in any case, and all merged ones with them. Where these
+  /// come to more than `mostBytes`, drops the records of the least worth() until an eighth of that is free
+  /// again. Does nothing while another process merges. Returns the bytes freed.
   std::uint64_t merge(std::uint64_t mostBytes, bool all);
   /// Removes all segments and forgets all records.
   void clear();
@@ -64,7 +66,10 @@ class RecordLog {
   static std::int64_t now();
 
  private:
+  static constexpr std::int64_t kDay = 86'400'000'000'000;  // ns
+
   Frame newest(const Digest& key) const;
+  Frame markUsed(Frame frame);
   char* room(std::size_t size);
   void added(std::size_t size, bool atOnce);
   void appendPending();

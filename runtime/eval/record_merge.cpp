@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <tuple>
 
+#include "base/partial_file.h"
 #include "eval/record_log.h"
+#include "eval/worth.h"
 
 namespace sherd::store {
 namespace {
@@ -61,20 +63,45 @@ Inputs freeSegments(const std::string& folder) {
   return inputs;
 }
 
-/// The newest frame of each key; of these the newest that fit into mostBytes.
+struct Candidate {
+  std::uint64_t bits;
+  std::int64_t time, used;
+  Frame frame;
+  double worth = 0;
+};
+
+/// Bytes of a merged segment for this frame, with its share of the indices.
+std::uint64_t bytesOf(Frame frame) {
+  constexpr std::uint64_t kMostOfIndices = 64;
+  return sizeOf(frame) + kMostOfIndices;
+}
+
+/// Drops the frames of the least worth where all together have more than mostBytes. Not just to the bound:
+/// the next run would have to merge everything again.
+void dropLeastWorth(std::vector<Candidate>& frames, std::uint64_t mostBytes) {
+  std::uint64_t bytes = 0;
+  for (const Candidate& candidate : frames) bytes += bytesOf(candidate.frame);
+  if (bytes <= mostBytes) return;
+  const std::int64_t now = RecordLog::now();
+  for (Candidate& candidate : frames)
+    candidate.worth = worth(costOf(candidate.frame), sizeOf(candidate.frame),
+                            1e-9 * static_cast<double>(std::max<std::int64_t>(0, now - candidate.used)));
+  std::stable_sort(frames.begin(), frames.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.worth < b.worth; });
+  std::size_t dropped = 0;
+  while (bytes > mostBytes - mostBytes / 8) bytes -= bytesOf(frames[dropped++].frame);
+  frames.erase(frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(dropped));
+}
+
+/// The newest frame of each key, as far as they fit into mostBytes.
 std::vector<Frame> newestFrames(const std::vector<Input>& inputs, std::uint64_t mostBytes) {
-  struct Candidate {
-    std::uint64_t bits;
-    std::int64_t time;
-    Frame frame;
-  };
   std::vector<Candidate> all;
   for (const Input& input : inputs)
     eachFrame(input.bytes(), input.begin(), [&](Frame frame) {
-      all.push_back({mixed(keyOf(frame)), timeOf(frame), frame});
+      all.push_back({mixed(keyOf(frame)), timeOf(frame), usedOf(frame), frame});
     });
   const auto older = [](const Candidate& a, const Candidate& b) {
-    return std::tie(a.bits, a.time) < std::tie(b.bits, b.time);
+    return std::tie(a.bits, a.time, a.used) < std::tie(b.bits, b.time, b.used);
   };
   std::stable_sort(all.begin(), all.end(), older);
   std::vector<Candidate> newest;
@@ -84,16 +111,7 @@ std::vector<Frame> newestFrames(const std::vector<Input>& inputs, std::uint64_t 
       newest.pop_back();
     newest.push_back(candidate);
   }
-  std::uint64_t bytes = 0;
-  for (const Candidate& candidate : newest) bytes += sizeOf(candidate.frame);
-  if (bytes > mostBytes) {
-    std::sort(newest.begin(), newest.end(),
-              [](const Candidate& a, const Candidate& b) { return a.time < b.time; });
-    std::size_t dropped = 0;
-    while (bytes > mostBytes) bytes -= sizeOf(newest[dropped++].frame);
-    newest.erase(newest.begin(), newest.begin() + static_cast<std::ptrdiff_t>(dropped));
-    std::sort(newest.begin(), newest.end(), older);
-  }
+  dropLeastWorth(newest, mostBytes);
   std::vector<Frame> frames;
   frames.reserve(newest.size());
   for (const Candidate& candidate : newest) frames.push_back(candidate.frame);

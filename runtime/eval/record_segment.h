@@ -22,7 +22,7 @@ namespace sherd::store {
 
 struct SegmentHead {
   static constexpr std::uint64_t kMagic = 0x6365'7264'7265'6873;  // "sherdrec"
-  static constexpr std::uint32_t kFormat = 1;
+  static constexpr std::uint32_t kFormat = 2;
   std::uint64_t magic = kMagic;
   std::uint32_t format = kFormat;
   std::uint32_t merged = 0;  ///< 1 where indices follow

@@ -3,7 +3,6 @@
 #include <dirent.h>
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -16,7 +15,7 @@
 #include <system_error>
 
 #include "base/atomic_file.h"
-#include "base/hash.h"
+#include "base/partial_file.h"
 
 namespace sherd::store {
 namespace {
@@ -99,12 +98,6 @@ bool lockIfFree(const Descriptor& file) {
 std::uint64_t fileBytes(const std::string& path) {
   struct stat info {};
   return ::lstat(path.c_str(), &info) == 0 ? static_cast<std::uint64_t>(info.st_size) : 0;
-}
-
-std::string randomName() {
-  std::uint64_t bits = 0;
-  while (::getrandom(&bits, sizeof bits, 0) != static_cast<ssize_t>(sizeof bits)) continue;
-  return Digest{bits, 0}.hex().substr(0, 16);
 }
 
 std::string Directory::at(std::string_view relative) const {

@@ -54,8 +54,6 @@ Descriptor openToRead(const std::string& path);
 bool lockIfFree(const Descriptor& file);
 /// 0 where there is none.
 std::uint64_t fileBytes(const std::string& path);
-/// 16 random hexadecimal digits.
-std::string randomName();
 
 class Directory {
  public:

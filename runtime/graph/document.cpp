@@ -38,12 +38,20 @@ class Builder {
     const auto begin = text_.begin() + static_cast<std::ptrdiff_t>(passed.begin);
     const auto end = text_.begin() + static_cast<std::ptrdiff_t>(passed.end);
     line_ = passed.line + static_cast<int>(std::count(begin, end, '\n'));
+    column_ = passed.column + static_cast<int>(characters(text_, passed));
     ++at_;
+  }
+  static std::size_t characters(const std::string& text, const JsonToken& token) {
+    return static_cast<std::size_t>(
+        std::count_if(text.begin() + static_cast<std::ptrdiff_t>(token.begin),
+                      text.begin() + static_cast<std::ptrdiff_t>(token.end),
+                      [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
   }
   bool blankBefore() const { return at_ > 0 && token().line > line_ + 1; }
 
   DocumentComment takeComment() {
-    DocumentComment comment{text_.substr(token().begin, token().end - token().begin), blankBefore()};
+    DocumentComment comment{text_.substr(token().begin, token().end - token().begin), blankBefore(),
+                            token().column, token().column - column_};
     comment.text.erase(comment.text.find_last_not_of(" \t\r") + 1);
     advance();
     return comment;
@@ -98,6 +106,7 @@ class Builder {
     while (true) {
       DocumentEntry entry;
       takeComments(entry.before, entry.blankBefore);
+      entry.newLine = token().line > line_;
       if (token().kind == close) {
         value.atEnd = std::move(entry.before);
         break;
@@ -132,12 +141,15 @@ class Builder {
     advance();
     takeOdd(entry.before);
     advance();  // the colon
+    if (token().line != line_ || token().kind == Kind::Comment) return;
+    entry.column = token().column;
+    entry.gap = token().column - column_;
   }
 
   const std::string& text_;
   std::vector<JsonToken> tokens_;
   std::size_t at_ = 0;
-  int line_ = 1;  ///< where the token before the next one ended
+  int line_ = 1, column_ = 1;  ///< where the token before the next one ended, if it was in one line
 };
 
 }  // namespace

@@ -15,6 +15,8 @@ namespace sherd {
 struct DocumentComment {
   std::string text;
   bool blankBefore = false;  ///< at least one empty line is before it
+  int column = 0;            ///< from 1, in characters
+  int gap = 0;               ///< characters between it and what stands before it on its line
 };
 
 struct DocumentEntry;
@@ -37,6 +39,9 @@ struct DocumentEntry {
   std::size_t keyBegin = 0, keyEnd = 0;  ///< the key's bytes
   std::vector<DocumentComment> before;   ///< on lines of their own
   bool blankBefore = false;
+  bool newLine = false;  ///< begins on another line than what is before it
+  int column = 0;        ///< of the value, from 1, in characters; 0 where it isn't on the line of its key
+  int gap = 0;           ///< characters between the colon and it
   DocumentValue value;
   std::vector<DocumentComment> after;  ///< on the line of its end
 };
@@ -50,10 +55,12 @@ class Document {
   const DocumentValue& root() const { return root_.value; }
 
   /// Laid out anew: two spaces a level, short objects and lists on one line of at most kLongestLine
-  /// characters; comments, order, numbers and blank lines (one at most) are kept. Content is unchanged, and
-  /// doing it again changes nothing.
+  /// characters; comments, order, numbers and blank lines (one at most) are kept. So is what was lined up by
+  /// hand: values (of an object, or between its empty lines) and comments behind them, where most begin in one column; and objects and
+  /// lists that begin on the line of their bracket and go on below their first entry. Content is unchanged,
+  /// and doing it again changes nothing.
   std::string formatted() const;
-  static constexpr std::size_t kLongestLine = 110;
+  static constexpr std::size_t kLongestLine = 120;
 
  private:
   std::string text_;

@@ -11,9 +11,9 @@
 // error    distance of crack vertices from the cells' exact borders, and volumes, over four resolutions of
 // the
 //          tetrahedra
-// Times are medians of 20. Writes one CSV, Markdown table and SVG plot per part into the directory (default
-// build/bench_tessellate), and all tables into a section of FILE.md. Other arguments are Google Benchmark's.
-// Models of ../shared/meshes that are absent are left out, and said.
+// Times are medians of 20 (or of N). Writes one CSV, Markdown table and SVG plot per part into the directory
+// (default build/bench_tessellate), and all tables into a section of FILE.md. Other arguments are Google
+// Benchmark's. Models of ../shared/meshes that are absent are left out, and said.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -44,6 +44,7 @@ struct Options {
   fs::path out = SHERD_BINARY_DIR "/bench_tessellate";
   std::string results;
   bool peer = true;
+  int repetitions = 20;
   std::size_t largest = 10'000'000;
 };
 
@@ -129,10 +130,10 @@ void paper(const Options& options, std::string& report) {
     const Cells cells = prepared->cells[0];
     const auto surface = cells->embedding->tets->surface;
     const auto pieces = std::make_shared<std::size_t>(0);
-    timeCut(name + "/exact", cells, CellMode::Exact, 20,
+    timeCut(name + "/exact", cells, CellMode::Exact, options.repetitions,
             [pieces](const Fragments& f) { *pieces = f.pieces.size(); });
-    timeCut(name + "/canonical", cells, CellMode::Canonical, 20);
-    timeCopy(name + "/copy", surface, 20);
+    timeCut(name + "/canonical", cells, CellMode::Canonical, options.repetitions);
+    timeCopy(name + "/copy", surface, options.repetitions);
     fill.push_back([=, &table] {
       const PeerCut peer = options.peer ? cutByCorefinement(*surface, sitesInSpace(*cells)) : PeerCut{};
       const double exact = medianOf(name + "/exact"), copy = medianOf(name + "/copy");
@@ -149,9 +150,8 @@ void paper(const Options& options, std::string& report) {
   runMeasured();
   for (const auto& f : fill) f();
   table.write(options.out / "paper.csv");
-  report +=
-      "### The paper's cases\n\nMedians of 20, in ms; cpu ms is the processor time of all threads.\n\n" +
-      table.markdown() + "\n";
+  report += "### The paper's cases\n\nMedians, in ms; cpu ms is the processor time of all threads.\n\n" +
+            table.markdown() + "\n";
 }
 
 // Scaling.
@@ -172,7 +172,7 @@ void family(const std::string& title, const std::string& abscissa, const std::ve
   for (const double x : xs) {
     const Cells cells = make(x);
     const std::string name = fmt::format("{}/{:g}", title, x);
-    const int repetitions = x > 2e6 ? 5 : 20;
+    const int repetitions = x > 2e6 ? std::min(5, options.repetitions) : options.repetitions;
     auto counts = std::make_shared<std::array<std::size_t, 3>>();
     timeCut(name + "/exact", cells, CellMode::Exact, repetitions, [counts](const Fragments& f) {
       std::size_t cracks = 0;
@@ -284,7 +284,7 @@ void error(const Options& options, std::string& report) {
     for (const CellMode mode : {CellMode::Exact, CellMode::Canonical}) {
       const std::string modeName = mode == CellMode::Exact ? "exact" : "canonical";
       const std::string name = fmt::format("error/{}/{}/{}", number_, c.name, modeName);
-      timeCut(name, c.cells, mode, 20);
+      timeCut(name, c.cells, mode, options.repetitions);
       runMeasured();
       const Fragments f = cutOrExit(*c.cells, mode);
       const CrackError distance = crackError(f, *c.cells);
@@ -331,6 +331,8 @@ Options read(int argc, char** argv) {
       options.results = argv[++i];
     else if (word == "--largest" && more)
       options.largest = std::stoul(argv[++i]);
+    else if (word == "--repetitions" && more)
+      options.repetitions = std::stoi(argv[++i]);
     else if (word == "--no-peer")
       options.peer = false;
     else {

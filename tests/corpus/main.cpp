@@ -90,8 +90,8 @@ class Corpus {
     ++totals_.meshes;
     if (!prepared.ok()) {
       ++totals_.refused;
-      table_.row(
-          {file.filename().string(), "", "", "", "", "", "refused: " + oneLine(prepared.error().what)});
+      table_.row({file.filename().string(), "", "", "", "", "",
+                  "refused: " + oneLine(withoutFolder(prepared.error().what, file))});
       return;
     }
     if (options_.prepareOnly) return;
@@ -114,6 +114,12 @@ class Corpus {
   }
 
  private:
+  static std::string withoutFolder(std::string text, const fs::path& file) {
+    const std::size_t found = text.find(file.string());
+    if (found != std::string::npos) text.replace(found, file.string().size(), file.filename().string());
+    return text;
+  }
+
   static std::string oneLine(std::string text) {
     std::replace(text.begin(), text.end(), '\n', ' ');
     std::replace(text.begin(), text.end(), '|', '/');

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "base/atomic_file.h"
+#include "base/partial_file.h"
 #include "faults/program_process.h"
 
 namespace sherd::faults {

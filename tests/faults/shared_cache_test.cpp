@@ -1,4 +1,7 @@
-// Several processes on one cache, one of which may be emptying it.
+// Several processes on one cache, one of which may be emptying it, or on one output directory.
+#include <signal.h>
+#include <stdlib.h>
+
 #include "faults/program_process.h"
 
 namespace sherd::faults {
@@ -82,6 +85,59 @@ void runWhileEmptied(int rounds, std::uint64_t seed) {
   EXPECT_EQ(emptied, 6 * rounds);
 }
 
+/// Two processes, each with a cache of its own, write the same files; every other time one of them is killed.
+void writeOneDirectory(int rounds, std::uint64_t seed) {
+  const ScratchDirectory scratch;
+  const Weave weave(scratch, {}, 1);
+  const auto expected = weave.undisturbed();
+  Random random(seed);
+  for (int round = 0; round < rounds && !testing::Test::HasFailure(); ++round) {
+    const std::string when = "round " + std::to_string(round);
+    weave.startAnew();
+    fs::remove_all(weave.file("other"));
+    Process killed(weave.run({}, "other"), weave.root());
+    Process whole(weave.run(), weave.root());
+    const bool isKilled = round % 2 == 1;
+    if (isKilled) {
+      sleepSeconds(0.15 * random.unit());
+      killed.signal(SIGKILL);
+    }
+    const Ended first = killed.wait(), second = whole.wait();
+    EXPECT_EQ(second.exitCode, 0) << second.out << second.err << when;
+    EXPECT_EQ(first.exitCode, isKilled && first.exitCode != 0 ? 128 + SIGKILL : 0)
+        << first.out << first.err << when;
+    EXPECT_EQ(weave.runToEnd().exitCode, 0) << when;
+    expectSameFiles(weave.outputs(), expected, when);
+  }
+}
+
+std::uint64_t bytesBelow(const std::string& directory) {
+  std::uint64_t bytes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(directory))
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  return bytes;
+}
+
+TEST(CacheSize, IsKeptToByOptionAndByVariable) {
+  const ScratchDirectory scratch;
+  const Weave weave(scratch, {}, 2);
+  const auto expected = weave.undisturbed();
+  EXPECT_EQ(weave.runToEnd().exitCode, 0);
+  EXPECT_GT(bytesBelow(weave.file("cache")), 1'000'000u);
+  EXPECT_EQ(weave.runToEnd({"--set", "a0.seed=1", "--cache-size", "500K"}).exitCode, 0);
+  EXPECT_LE(bytesBelow(weave.file("cache")), 500u << 10);
+  EXPECT_GE(bytesBelow(weave.file("cache")), 300u << 10);
+  const auto setSmall = [] { ::setenv("SHERD_CACHE_SIZE", "250K", 1); };
+  EXPECT_EQ(runSherd(weave.run({"--set", "a0.seed=2"}), weave.root(), FAULT_PACK, setSmall).exitCode, 0);
+  EXPECT_LE(bytesBelow(weave.file("cache")), 250u << 10);
+  EXPECT_EQ(weave.runToEnd().exitCode, 0);
+  expectSameFiles(weave.outputs(), expected);
+  const Ended refused = weave.runToEnd({"--cache-size", "huge"});
+  EXPECT_EQ(refused.exitCode, 2);
+  EXPECT_NE(refused.err.find("--cache-size: \"huge\" is no size"), std::string::npos) << refused.err;
+}
+
+TEST(SharedOutput, TwoProcessesMayWriteTheSameFiles) { writeOneDirectory(20, 5); }
 TEST(SharedCache, TwoProcessesAgreeWithNone) { runSideBySide(8, 1); }
 TEST(SharedCacheSlow, TwoProcessesAgreeWithNoneFor50Rounds) { runSideBySide(50, 2); }
 TEST(SharedCache, MayBeEmptiedAtAnyMoment) { runWhileEmptied(8, 3); }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "support/exported_pieces.h"
+#include "support/glb_file.h"
 #include "support/program.h"
 
 namespace sherd {
@@ -63,6 +64,51 @@ TEST(Graphs, SameBytesWithOneAndTwoThreadsAndInTwoRuns) {
     for (const auto& [name, content] : files) EXPECT_TRUE(content == first[name]) << name << options;
     EXPECT_EQ(files.size(), first.size());
   }
+}
+
+struct GlbSums {
+  double volume = 0, told = 0;       ///< m³, of the triangles and as the pieces' properties say
+  double area = 0, textureArea = 0;  ///< of the crack faces, m² and UV units²
+
+  void add(const test::GlbFile& file, const nlohmann::json& primitive) {
+    const bool isInside =
+        file.json["materials"][primitive["material"].get<std::size_t>()]["name"] == "inside";
+    const auto positions = file.attribute(primitive, "POSITION"),
+               uvs = file.attribute(primitive, "TEXCOORD_0");
+    const auto corners = file.indices(primitive);
+    for (std::size_t i = 0; i < corners.size(); i += 3) {
+      Eigen::Matrix3d x, uv = Eigen::Matrix3d::Ones();
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        const std::size_t v = corners[i + static_cast<std::size_t>(c)];
+        x.col(c) = Eigen::Vector3d::Map(positions[v].data());
+        uv.col(c).head<2>() = Eigen::Vector2d::Map(uvs[v].data());
+      }
+      volume += x.determinant() / 6;
+      if (!isInside) continue;
+      area += (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).norm() / 2;
+      textureArea += std::abs(uv.determinant()) / 2;
+    }
+  }
+};
+
+TEST(Graphs, PiecesGlbIsSoundAndHasOneTexelDensity) {
+  const ScratchDirectory scratch;
+  const ProgramRun run =
+      runProgram("run '" + kGraphs + "pieces_glb.json' --var out='" + scratch.file("out") + "'");
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  const test::GlbFile file(scratch.file("out/pieces.glb"));
+  for (const std::string& fault : file.faults) ADD_FAILURE() << fault;
+  ASSERT_GE(file.json["nodes"].size(), 10u);
+  GlbSums sums;
+  for (const auto& node : file.json["nodes"]) {
+    sums.told += node["extras"]["volume"].get<double>();
+    for (const auto& primitive : file.json["meshes"][node["mesh"].get<std::size_t>()]["primitives"])
+      sums.add(file, primitive);
+  }
+  EXPECT_NEAR(sums.volume, sums.told, 1e-6 * sums.told);
+  // Four units a metre, as the graph says.
+  EXPECT_LE(sums.textureArea, 16 * sums.area * (1 + 1e-5));
+  EXPECT_GE(sums.textureArea, 16 * sums.area * 0.95);
 }
 
 testing::AssertionResult succeeds(const std::string& arguments) {

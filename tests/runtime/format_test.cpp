@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "base/line_diff.h"
 #include "base/rng.h"
@@ -20,6 +22,13 @@ std::string formatted(const std::string& text) {
   for (const Diagnostic& diagnostic : diagnostics.sorted())
     ADD_FAILURE() << diagnostic.text() << '\n' << text;
   return diagnostics.empty() ? document.formatted() : std::string();
+}
+
+namespace fs = std::filesystem;
+
+std::string contentOfFile(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 std::string contentOf(const std::string& text) {
@@ -61,10 +70,142 @@ TEST(Format, LaysOutAGraph) {
 )");
 }
 
+TEST(Format, KeepsWhatIsLinedUp) {
+  const std::string kept = R"({
+  "vars": {
+    "seed": 7,        // any
+    "gamma": 2.5e-3,  // J·m²
+    "out": "x"
+  },
+  "nodes": {
+    "mesh": { "type": "LoadMesh@1" },
+
+    // A comment between.
+    "bärte": { "type": "Embed@1" },
+    "hit":   { "type": "Simulate@1", "in": { "body": "a rather long name of a node", "other": "second" },
+               "params": { "height": 1.0, "orientation": [25, 0, 15],
+                           "speed": 20,  // m/s
+                           "target": [0.35, 0.6, 0.5] } }
+  },
+  "list": [1000000000, 1000000000, 1000000000, 1000000000, 1000000000, 1000000000, 1000000000,
+           2000000000, 2000000000, 2000000000, 2000000000]
+}
+)";
+  const std::string mesh = "\"mesh\": {";
+  std::string aligned = kept;
+  aligned.replace(aligned.find(mesh), mesh.size(), "\"mesh\":  {");
+  EXPECT_EQ(formatted(aligned), aligned);
+  EXPECT_EQ(formatted(kept), kept);
+}
+
+TEST(Format, LinesUpAnew) {
+  // One name has become longer, and one comment has moved.
+  EXPECT_EQ(formatted(R"({"nodes": {
+    "a":   { "type": "X" },
+    "longer": { "type": "X" },
+    "bcd": { "type": "X" } },
+  "vars": {
+    "a": [1, 2, 3, 4], // one
+    "b": 1,     // two
+    "c": 1.5,   // three
+    "d": 12}
+})"),
+            R"({
+  "nodes": {
+    "a":      { "type": "X" },
+    "longer": { "type": "X" },
+    "bcd":    { "type": "X" }
+  },
+  "vars": {
+    "a": [1, 2, 3, 4],  // one
+    "b": 1,             // two
+    "c": 1.5,           // three
+    "d": 12
+  }
+}
+)");
+  const std::string single = "{\n  \"a\":    1,      // one\n  \"bc\": 2\n}\n";
+  EXPECT_EQ(formatted(single), "{\n  \"a\": 1,  // one\n  \"bc\": 2\n}\n");
+}
+
+TEST(Format, BreaksWhatIsTooLongAmongWhatIsLinedUp) {
+  const std::string text(60, 'x');
+  EXPECT_EQ(formatted("{\"nodes\": {\n\"a\":    { \"t\": 1 },\n\"long\": { \"t\": \"" + text +
+                      "\", \"u\": \"" + text + "\" } } }"),
+            "{\n  \"nodes\": {\n    \"a\":    { \"t\": 1 },\n    \"long\": { \"t\": \"" + text +
+                "\",\n              \"u\": \"" + text + "\" }\n  }\n}\n");
+}
+
+TEST(Format, LinesUpGroupsByThemselves) {
+  const std::string kept = R"({
+  "nodes": {
+    "mesh":   { "type": "X" },
+    "longer": { "type": "X" },
+
+    // Another group.
+    "splinter_crack": { "type": "X" },
+    "tets":           { "type": "X" },
+
+    "alone": { "type": "X" },
+
+    "not": { "type": "X" },
+    "lined": { "type": "X" },
+    "up": { "type": "X" }
+  }
+}
+)";
+  EXPECT_EQ(formatted(kept), kept);
+}
+
+TEST(Format, BreaksHangingLinesThatAreTooLong) {
+  const std::string text(40, 'x');
+  EXPECT_EQ(formatted("{\"nodes\": {\"a\": { \"b\": \"" + text + "\", \"c\": \"" + text + "\", \"d\": \"" +
+                      text + "\",\n\"e\": 1}}}"),
+            "{\n  \"nodes\": {\n    \"a\": { \"b\": \"" + text + "\", \"c\": \"" + text +
+                "\",\n           \"d\": \"" + text + "\",\n           \"e\": 1 }\n  }\n}\n");
+  // So are objects in them.
+  const std::string half(70, 'x');
+  EXPECT_EQ(formatted("{\"nodes\": {\"a\": { \"type\": \"X\",\n\"params\": { \"b\": \"" + half +
+                      "\", \"c\": \"" + half + "\"}}}}"),
+            "{\n  \"nodes\": {\n    \"a\": { \"type\": \"X\",\n           \"params\": { \"b\": \"" + half +
+                "\",\n                       \"c\": \"" + half + "\" } }\n  }\n}\n");
+  // What fits nowhere stands below.
+  const std::string endless(130, 'x');
+  EXPECT_EQ(
+      formatted("{\"nodes\": {\"a\": { \"b\": 1,\n\"c\": \"" + endless + "\"}}}"),
+      "{\n  \"nodes\": {\n    \"a\": {\n      \"b\": 1,\n      \"c\": \"" + endless + "\"\n    }\n  }\n}\n");
+}
+
+TEST(Format, ShippedGraphsAreInItsForm) {
+  std::vector<fs::path> files{SHERD_SOURCE_DIR "/tests/sdk_example/volume.json"};
+  for (const auto& entry : fs::recursive_directory_iterator(SHERD_SOURCE_DIR "/graphs"))
+    if (entry.path().extension() == ".json" && entry.path().string().find("/out/") == std::string::npos)
+      files.push_back(entry.path());
+  EXPECT_GE(files.size(), 8u);
+  for (const fs::path& file : files) {
+    const std::string text = contentOfFile(file);
+    EXPECT_EQ(unifiedDiff(text, formatted(text), file.string()), "")
+        << "bash runtime/sherd fmt --write " << file.string() << " mends this";
+  }
+}
+
+TEST(Format, SoIsTheGraphOfTheReadme) {
+  std::istringstream readme(contentOfFile(SHERD_SOURCE_DIR "/README.md"));
+  std::string graph;
+  for (std::string line; std::getline(readme, line);) {
+    const bool begins = line == "    {" && graph.empty();
+    if (!begins && graph.empty()) continue;
+    graph += (line.size() > 4 ? line.substr(4) : "") + '\n';
+    if (line == "    }") break;
+  }
+  EXPECT_NE(graph.find("\"format\": 1"), std::string::npos) << graph;
+  EXPECT_EQ(unifiedDiff(graph, formatted(graph), "README.md"), "");
+}
+
 TEST(Format, KeepsLinesWithinTheLimit) {
-  const std::string fits = "{\n  \"a\": \"" + std::string(100, 'x') + "\"\n}\n";
+  const std::string fits = "{\n  \"a\": \"" + std::string(110, 'x') + "\"\n}\n";
   EXPECT_EQ(formatted(fits), fits);
-  for (std::size_t length = 85; length < 110; ++length) {
+  for (std::size_t length = 85; length < 120; ++length) {
     const std::string text = formatted("{\"key\": {\"ä\": \"" + std::string(length, 'x') + "\"}, \"b\": 1}");
     const bool isShort = length + std::string("  \"key\": { \"a\": \"\" },").size() <= Document::kLongestLine;
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), isShort ? 4 : 6) << text;
@@ -91,7 +232,7 @@ class RandomDocument {
  private:
   std::string space() {
     std::string text;
-    while (rng_.below(3) == 0) switch (rng_.below(6)) {
+    while (rng_.below(3) == 0) switch (rng_.below(8)) {
         case 0:
           text += "\n";
           break;
@@ -110,8 +251,12 @@ class RandomDocument {
           comments_.push_back("/* c" + std::to_string(comments_.size()) + ";\n  more */");
           text += comments_.back();
           break;
+        case 5:
+        case 6:
+          text += "\n  ";
+          break;
         default:
-          text += ' ';
+          text += std::string(1 + rng_.below(4), ' ');
       }
     return text;
   }
@@ -132,7 +277,8 @@ class RandomDocument {
     const auto count = rng_.below(5);
     for (std::uint64_t i = 0; i < count; ++i) {
       text += space();
-      if (isObject) text += "\"k" + std::to_string(i) + '"' + space() + ':' + space();
+      if (isObject)
+        text += "\"k" + std::string(rng_.below(4), 'y') + std::to_string(i) + '"' + space() + ':' + space();
       text += value(depth + 1) + space();
       if (i + 1 < count || rng_.below(4) == 0) text += ',';
     }
@@ -179,10 +325,7 @@ TEST(Fmt, ShowsChecksAndWrites) {
   std::ostringstream out, err;
   CancelToken cancel;
   Console console{out, err, cancel, false, 80};
-  auto content = [&] {
-    std::ifstream file(path, std::ios::binary);
-    return std::string{std::istreambuf_iterator<char>(file), {}};
-  };
+  const auto content = [&] { return contentOfFile(path); };
   EXPECT_EQ(fmtVerb({{path}, false, false}, console), kOk);
   EXPECT_EQ(out.str(), "--- " + path + "\n+++ " + path +
                            "\n@@ -1,1 +1,3 @@\n-{\"a\":1}\n+{\n+  \"a\": 1\n+}\n" +

@@ -154,17 +154,51 @@ TEST_F(Plans, AChangeThatEndsInTheSameResultStopsThere) {
   EXPECT_EQ(numberAt(graph, both.report, "u", "sum"), 5);
 }
 
+TEST_F(Plans, KnowTheFileWhoseNameComesOverAWire) {
+  directory.write("one.txt", "1");
+  directory.write("two.txt", "2");
+  const auto graphWith = [&](const std::string& name) {
+    return graphOf(R"("w": {"type": "Word@1", "params": {"text": ")" + name + R"("}},
+        "r": {"type": "ReadText@1", "in": {"file": "w"}})",
+                   registry, directory.path());
+  };
+  Graph graph = graphWith("one.txt");
+  expectAgreement(graph, planAndRun(graph, {1}, false), "first");
+  Both both = planAndRun(graph, {1}, false);
+  for (const PlanEntry& entry : both.plan) EXPECT_EQ(entry.state, PlanState::Hit) << entry.why;
+  expectAgreement(graph, both, "again");
+  EXPECT_EQ(counters->reads, 1);
+  directory.write("one.txt", "other");
+  both = planAndRun(graph, {1}, false);
+  EXPECT_EQ(entryOf(graph, both, "w").state, PlanState::Hit);
+  EXPECT_EQ(entryOf(graph, both, "r").state, PlanState::Run);
+  EXPECT_EQ(entryOf(graph, both, "r").why, "one.txt has changed");
+  expectAgreement(graph, both, "file");
+  graph = graphWith("two.txt");
+  both = planAndRun(graph, {1}, false);
+  EXPECT_EQ(entryOf(graph, both, "w").why, "text \"one.txt\" → \"two.txt\"");
+  EXPECT_EQ(entryOf(graph, both, "r").state, PlanState::Follows);
+  expectAgreement(graph, both, "name");
+  graph = graphWith("one.txt");
+  both = planAndRun(graph, {1}, false);
+  for (const PlanEntry& entry : both.plan) EXPECT_EQ(entry.state, PlanState::Hit) << entry.why;
+  expectAgreement(graph, both, "back");
+  open()->collect(0);  // names, too: the node that makes one runs to find out
+  both = planAndRun(graph, {1}, false);
+  expectAgreement(graph, both, "evicted");
+}
+
 /// A random graph of twenty nodes or so, and random edits of it.
 class RandomGraph {
  public:
   RandomGraph(std::uint64_t seed, fs::path directory) : directory_(std::move(directory)), seed_(seed) {
     for (int i = 0; i < 18; ++i) values_.push_back(draw(4));
-    for (int i = 0; i < 18; ++i) kinds_.push_back(draw(5));
+    for (int i = 0; i < 18; ++i) kinds_.push_back(draw(6));
     for (int i = 0; i < 36; ++i) wires_.push_back(draw(1000));
     writeFile(0);
   }
   void edit() {
-    switch (draw(4)) {
+    switch (draw(5)) {
       case 0:
         values_[static_cast<std::size_t>(draw(18))] = draw(4);
         break;
@@ -172,14 +206,19 @@ class RandomGraph {
         wires_[static_cast<std::size_t>(draw(36))] = draw(1000);
         break;
       case 2:
-        kinds_[static_cast<std::size_t>(draw(18))] = draw(5);
+        kinds_[static_cast<std::size_t>(draw(18))] = draw(6);
+        break;
+      case 3:
+        name_ = draw(2) == 0 ? "in.txt" : "other.txt";
         break;
       default:
         writeFile(draw(3));
     }
   }
   std::string nodes() const {
-    std::string text = R"("n0": {"type": "Constant@1", "params": {"value": "${frame}"}})";
+    std::string text = R"("n0": {"type": "Constant@1", "params": {"value": "${frame}"}},
+"v": {"type": "Word@1", "params": {"text": ")" +
+                       name_ + R"("}}, "w": {"type": "Word@1", "in": {"text": "v"}})";
     for (int i = 1; i < 18; ++i) text += ",\n\"n" + std::to_string(i) + "\": " + node(i);
     return text;
   }
@@ -197,6 +236,8 @@ class RandomGraph {
       case 1:
         return R"({"type": "Add@1", "in": {"a": )" + source(2 * at) + R"(, "b": )" + source(2 * at + 1) +
                R"(}, "params": {"offset": )" + value + "}}";
+      case 5:
+        return R"({"type": "Lines@1", "in": {"file": "w"}, "params": {"factor": )" + value + "}}";
       case 2:
         return R"({"type": "Constant@1", "params": {"value": )" + value + "}}";
       case 3:
@@ -208,10 +249,12 @@ class RandomGraph {
   void writeFile(int lines) {
     std::ofstream(directory_ / "in.txt", std::ios::binary)
         << std::string(static_cast<std::size_t>(lines), '\n');
+    std::ofstream(directory_ / "other.txt", std::ios::binary) << "one\ntwo\n";
   }
 
   fs::path directory_;
   std::uint64_t seed_, count_ = 0;
+  std::string name_ = "in.txt";
   std::vector<int> values_, kinds_, wires_;
 };
 

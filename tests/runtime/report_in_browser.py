@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Looks at reports in headless Chromium, as a user would: report_in_browser.py DIRECTORY.
 
-DIRECTORY holds fine.html, failed.html, hostile.html, large.html and empty.html (slow_report_test.cpp writes them).
+DIRECTORY holds fine.html, failed.html, hostile.html, large.html, folded.html and empty.html (slow_report_test.cpp
+writes them).
 Ends with 0 where everything is as it should be, and says what isn't.
 """
 import json
@@ -147,6 +148,13 @@ def look_at_large(page):
     page.expect_details("node1234\n")
 
 
+def look_at_folded(page):
+    page.check("Too much for one page: " in page.browser.find_element(By.TAG_NAME, "header").text,
+               "the summary doesn't say that something is left out")
+    page.click("a")
+    page.expect_details("in frame 777", "5000 ms", "50000 FRAMES AND WEDGES", " more are not shown: too much for one page")
+
+
 def no_overlaps(page):
     """No text of a box leaves it, in the fonts that the browser has."""
     page.check(page.browser.execute_script("""
@@ -166,7 +174,7 @@ def main():
         try:
             for name, look in (("fine.html", look_at_fine), ("failed.html", look_at_failed),
                                ("hostile.html", look_at_hostile), ("large.html", look_at_large),
-                               ("empty.html", lambda page: None)):
+                               ("folded.html", look_at_folded), ("empty.html", lambda page: None)):
                 page = Page(browser, directory, name)
                 no_overlaps(page)
                 look(page)

@@ -11,6 +11,8 @@
 #include <random>
 #include <sstream>
 
+#include "cli/report_fold.h"
+#include "cli/report_groups.h"
 #include "cli/report_layout.h"
 #include "cli/report_pictures.h"
 #include "cli/report_text.h"
@@ -229,6 +231,71 @@ TEST(ReportPage, ThousandsOfNodesAreDrawn) {
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   EXPECT_EQ(countOf(page, "class=\"box "), 2000u);
   RecordProperty("seconds", std::to_string(took.count()));
+}
+
+TEST(ReportPage, WhatNobodyCanLookAtIsFolded) {
+  ReportData data = test::randomReport(60'000, 2);
+  data.nodes[40'000].state = "failed";
+  data.nodes[40'000].error = "the one error";
+  for (ReportNode& node : data.nodes)
+    if (&node != &data.nodes[40'000] && node.state == "failed") node.state = "hit";
+  const std::string page = reportPage(data);
+  EXPECT_LT(page.size(), 10u << 20);
+  EXPECT_GT(page.size(), 3u << 20);
+  EXPECT_TRUE(has(page, "the one error"));
+  EXPECT_TRUE(
+      has(page, "<span class=\"word s-failed\"><svg><use href=\"#m-failed\"/></svg>failed</span><b>1</b>"));
+  const Json shown = dataOf(page);
+  const std::size_t boxes = countOf(page, "class=\"box ");
+  EXPECT_EQ(shown.at("groups").size(), boxes);
+  EXPECT_GT(boxes, 1000u);
+  EXPECT_TRUE(
+      has(page, "Too much for one page: " + std::to_string(60'000 - boxes) + " of 60000 nodes are counted"));
+  for (const Json& wire : shown.at("wires")) {
+    ASSERT_LT(wire.at("from").get<std::size_t>(), boxes);
+    ASSERT_LT(wire.at("to").get<std::size_t>(), boxes);
+  }
+}
+
+TEST(ReportPage, FramesThatNobodyCanLookAtAreFolded) {
+  ReportData data;
+  for (int frame = 0; frame < 100'000; ++frame) {
+    ReportNode node = ran(frame % 2 == 0 ? "a" : "b");
+    node.context = "frame " + std::to_string(frame);
+    node.ms = frame == 777 ? 1000 : 1;
+    data.nodes.push_back(std::move(node));
+    if (frame % 2 == 1) data.wires.push_back({frame - 1, frame, "out", "in"});
+  }
+  const std::string page = reportPage(data);
+  EXPECT_LT(page.size(), 10u << 20);
+  const Json shown = dataOf(page);
+  ASSERT_EQ(shown.at("groups").size(), 2u);
+  EXPECT_EQ(shown.at("wires").size(), 1u);
+  std::size_t runs = 0, leftOut = 0;
+  for (const Json& group : shown.at("groups")) {
+    EXPECT_EQ(group.at("runs").size() + group.at("leftOut").get<std::size_t>(), 50'000u);
+    EXPECT_EQ(group.at("state"), "run");
+    runs += group.at("runs").size();
+    leftOut += group.at("leftOut").get<std::size_t>();
+  }
+  EXPECT_GT(runs, 10'000u);
+  EXPECT_TRUE(
+      has(page, "Too much for one page: " + std::to_string(leftOut) + " frames and wedges are counted"));
+  EXPECT_TRUE(has(page, "\"frame 777\""));
+  EXPECT_TRUE(has(page, "×50000"));
+}
+
+TEST(ReportPage, NothingIsFoldedThatFits) {
+  const ReportData data = test::randomReport(500, 3);
+  ReportGroups grouped = groupNodes(data);
+  foldReport(data, grouped);
+  EXPECT_EQ(grouped.groups.size(), 500u);
+  EXPECT_EQ(grouped.leftOut, 0u);
+  foldReport(data, grouped, 100'000);
+  EXPECT_EQ(grouped.groups.size() + grouped.leftOut, 500u);
+  EXPECT_LT(grouped.groups.size(), 100u);
+  for (const ReportGroup& group : grouped.groups)
+    EXPECT_EQ(data.nodes[static_cast<std::size_t>(group.runs.front())].state, "failed");
 }
 
 TEST(ReportPictures, AreEmbeddedUpToALimit) {

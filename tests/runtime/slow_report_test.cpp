@@ -36,6 +36,20 @@ ReportData hostileReport() {
   return data;
 }
 
+/// Two nodes of more frames than a page shows.
+ReportData foldedReport() {
+  ReportData data;
+  for (int i = 0; i < 100'000; ++i) {
+    ReportNode& node = data.nodes.emplace_back();
+    node.name = i % 2 == 0 ? "a" : "b";
+    node.type = "Made";
+    node.state = "run";
+    node.context = "frame " + std::to_string(i / 2);
+    node.ms = i == 777 * 2 ? 5000 : 1;
+  }
+  return data;
+}
+
 TEST(SlowReport, WorksInABrowser) {
   const test::TemporaryDirectory directory;
   const auto write = [&](const ReportData& data, const std::string& name) {
@@ -50,6 +64,7 @@ TEST(SlowReport, WorksInABrowser) {
   write(test::vaseReport(true), "failed.html");
   write(hostileReport(), "hostile.html");
   write(test::randomReport(2000, 1), "large.html");
+  write(foldedReport(), "folded.html");
   write({}, "empty.html");
 
   const std::string command = "/usr/bin/python3 '" SHERD_SOURCE_DIR "/tests/runtime/report_in_browser.py' '" +

@@ -10,8 +10,8 @@
 #include <optional>
 #include <thread>
 
-#include "base/atomic_file.h"
 #include "base/parallel.h"
+#include "base/partial_file.h"
 #include "base/rng.h"
 #include "eval/disk_store.h"
 #include "eval/evaluator.h"
@@ -122,7 +122,10 @@ bool isDeclared(const std::string& path, const Example& example) {
     if (!isPath(info.kind)) continue;
     const std::string& declared = std::get<std::string>(example.params.at(info.name));
     if (path == declared) return true;
-    if (info.kind == ParamKind::OutputFile && path == partialName(declared)) return true;
+    // Writing looks beside the file for what a killed run left.
+    const bool isBeside =
+        partialTarget(path) == declared || path == std::filesystem::path(declared).parent_path();
+    if (info.kind == ParamKind::OutputFile && isBeside) return true;
     if (info.kind == ParamKind::OutputDirectory && path.rfind(declared + '/', 0) == 0) return true;
   }
   return false;

@@ -148,8 +148,10 @@ class Slicer {
       for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
         below.crack.push_back({loop[0], loop[i], loop[i + 1]});
         below.crackNeighbour.push_back(k + 1);
+        below.crackSheet.push_back(k);
         above.crack.push_back({loop[0], loop[i + 1], loop[i]});
         above.crackNeighbour.push_back(k);
+        above.crackSheet.push_back(k);
       }
     }
   }

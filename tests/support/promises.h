@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "types/fragments.h"
 
@@ -63,7 +64,7 @@ inline PromiseReport measurePromises(const Fragments& f) {
   PromiseReport report;
   const TriMesh& source = *f.tets->surface;
   const Vec3 origin = source.positions.front();
-  std::map<std::pair<Triangle, std::pair<Index, Index>>, int> cracks;
+  std::map<std::tuple<Triangle, std::pair<Index, Index>, Index>, int> cracks;
   double volume = 0, area = 0;
   for (std::size_t i = 0; i < f.pieces.size(); ++i) {
     const Piece& piece = f.pieces[i];
@@ -88,7 +89,7 @@ inline PromiseReport measurePromises(const Fragments& f) {
       for (std::size_t a = 0; a < 3; ++a)
         for (std::size_t b = a + 1; b < 3; ++b) inversions += piece.crack[t][a] > piece.crack[t][b];
       const Index other = piece.crackNeighbour[t];
-      cracks[{sorted, std::minmax(static_cast<Index>(i), other)}] +=
+      cracks[{sorted, std::minmax(static_cast<Index>(i), other), piece.crackSheet[t]}] +=
           (inversions % 2 == 0 ? 1 : -1) * (1000 + (static_cast<Index>(i) < other ? 1 : 0));
     }
     for (std::size_t t = 0; t < piece.surface.size(); ++t)

@@ -220,6 +220,55 @@ TEST_F(Export, NamesAndAttributes) {
                                                     "piece_0002_crack_with_piece_0003"}));
   EXPECT_EQ(crack.materials, (std::vector<std::string>{"inside", "inside"}));
   EXPECT_EQ(crack.normals, 2u);
+  EXPECT_EQ(crack.uvs, 16u);  // two sections of eight vertices
+}
+
+TEST_F(Export, FacesWithoutMaterialAreOutside) {
+  TriMesh box = test::boxMesh(Vec3::Zero(), Vec3(2, 1, 1));
+  box.materialOf[0] = -1;
+  for (const bool hasMaterials : {true, false}) {
+    if (!hasMaterials) box.materials.clear(), box.materialOf.clear();
+    params.format = Params::Format::Obj;
+    ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
+    const Obj surface = readObj(out("piece_0001_surface.obj"));
+    EXPECT_EQ(surface.materials.front(), "outside");
+    EXPECT_EQ(surface.materials.size(), hasMaterials ? 4u : 1u);
+    params.format = Params::Format::Ply;
+    ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
+    EXPECT_NE(slurp(out("piece_0001_surface.ply"))
+                  .find(hasMaterials ? "comment material 2 outside\n" : "comment material 0 outside\n"),
+              std::string::npos);
+  }
+}
+
+TEST_F(Export, AMaterialNamedAsOursIsWarnedOf) {
+  TriMesh box = test::boxMesh(Vec3::Zero(), Vec3(2, 1, 1));
+  box.materials[1] = "inside";
+  ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
+  ASSERT_EQ(listener.warnings.size(), 1u);
+  EXPECT_NE(listener.warnings[0].find("'inside'"), std::string::npos);
+}
+
+TEST_F(Export, TextureDensityScalesCrackUvs) {
+  const Fragments f = test::slicedBox(2);
+  for (const double density : {1.0, 8.0}) {
+    params.textureDensity = density;
+    ASSERT_TRUE(run(f).ok());
+    std::ifstream in(out("piece_0001_crack.obj"));
+    double largest = 0;
+    for (std::string line, key; std::getline(in, line);) {
+      std::istringstream words(line);
+      double u = 0, v = 0;
+      if (words >> key && key == "vt" && words >> u >> v) largest = std::max({largest, u, v});
+    }
+    EXPECT_NEAR(largest, density, 1e-6);  // the section is a square of a metre
+  }
+  for (const double density : {0.0, -1.0, 1e39, std::nan("")}) {
+    params.textureDensity = density;
+    const auto result = run(f);
+    ASSERT_FALSE(result.ok());
+    EXPECT_EQ(result.error().port, "texture_density");
+  }
 }
 
 TEST_F(Export, DescriptionAddsUp) {
@@ -235,8 +284,19 @@ TEST_F(Export, DescriptionAddsUp) {
     mass += piece["mass"].get<double>();
     EXPECT_TRUE(fs::exists(out(piece["surface"])));
     EXPECT_TRUE(fs::exists(out(piece["crack"])));
-    for (const auto& neighbour : piece["neighbours"])
+    for (const auto& neighbour : piece["neighbours"]) {
       EXPECT_NEAR(neighbour["contact_area"].get<double>(), 1, 1e-12);
+      EXPECT_NEAR(neighbour["normal"][0].get<double>(), neighbour["name"] < piece["name"] ? -1 : 1, 1e-12);
+    }
+  }
+  ASSERT_EQ(json["bonds"].size(), 3u);
+  const auto& bond = json["bonds"][1];
+  EXPECT_EQ(bond["pieces"], (nlohmann::json{"piece_0002", "piece_0003"}));
+  EXPECT_NEAR(bond["contact_area"].get<double>(), 1, 1e-12);
+  const double centroid[] = {2.1, 0.5, 0.5}, normal[] = {1, 0, 0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(bond["centroid"][i].get<double>(), centroid[i], 1e-12);
+    EXPECT_NEAR(bond["normal"][i].get<double>(), normal[i], 1e-12);
   }
   EXPECT_NEAR(mass, 4 * 2400, 1e-9);
   EXPECT_EQ(json["pieces"][1]["neighbours"].size(), 2u);
@@ -277,6 +337,15 @@ TEST_F(Export, SecondRunTouchesNothingAndMendsWhatWasChanged) {
   EXPECT_EQ(slurp(out("piece_0002_crack.obj")), whole);
 }
 
+TEST_F(Export, ALonelyCrackTriangleIsAnErrorBeforeAnythingIsWritten) {
+  Fragments f = test::slicedBox(2);
+  std::swap(f.pieces[0].crack[0][0], f.pieces[0].crack[0][1]);
+  const auto result = run(f);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().port, "pieces");
+  EXPECT_FALSE(fs::exists(params.directory));
+}
+
 TEST_F(Export, RefusesForeignFileUnderOurNameBeforeWriting) {
   fs::create_directories(params.directory);
   spill(out("piece_0002_crack.obj"), "a stranger's");
@@ -295,7 +364,7 @@ TEST_F(Export, KilledRunIsCleanedUp) {
   manifest["files"]["piece_0007_surface.obj"] = "";
   spill(out("sherd_manifest.json"), manifest.dump());
   spill(out("piece_0006_surface.obj"), "v 0 0 0");
-  spill(out("piece_0007_surface.obj.partial"), "v 0");
+  spill(out("piece_0007_surface.obj.0123456789abcdef.partial"), "v 0");
   ASSERT_TRUE(run(test::slicedBox(2)).ok());
   EXPECT_EQ(namesIn(params.directory).size(), 2u * 2 + 2);
 }
@@ -368,7 +437,7 @@ TEST_F(Export, CancelledRunLeavesNoPieces) {
   const auto result = run(test::slicedBox(2));
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().kind, Error::Kind::Cancelled);
-  EXPECT_TRUE(namesIn(params.directory).empty());
+  EXPECT_FALSE(fs::exists(params.directory));
 }
 
 /// New pieces never stand beside the description of old ones.
@@ -435,18 +504,18 @@ TEST_F(Export, PlyHoldsWhatItsHeaderSays) {
   ASSERT_TRUE(run(test::slicedBox(2)).ok());
   const std::string ply = slurp(out("piece_0001_crack.ply"));
   const std::size_t body = ply.find("end_header\n") + 11;
-  // A square section with a diagonal's crossings on each of its sides: 8 vertices of six doubles, 6
-  // triangles.
+  // A square section with a diagonal's crossings on each of its sides: 8 vertices of eight doubles,
+  // 6 triangles.
   EXPECT_NE(ply.find("element vertex 8\n"), std::string::npos);
   EXPECT_NE(ply.find("element face 6\n"), std::string::npos);
-  EXPECT_EQ(ply.size() - body, 8u * 6 * sizeof(double) + 6u * (1 + 3 * 4 + 4));
+  EXPECT_EQ(ply.size() - body, 8u * 8 * sizeof(double) + 6u * (1 + 3 * 4 + 4));
   double x = 0;
   std::memcpy(&x, ply.data() + body, sizeof x);
   EXPECT_EQ(x, 1.1);
 }
 
 TEST_F(Export, FlatAndSmoothNormalsOfAPlaneAreOne) {
-  for (const auto kind : {Params::CrackNormals::Flat, Params::CrackNormals::Smooth}) {
+  for (const auto kind : {CrackNormals::Flat, CrackNormals::Smooth}) {
     params.crackNormals = kind;
     ASSERT_TRUE(run(test::slicedBox(2)).ok());
     EXPECT_EQ(readObj(out("piece_0001_crack.obj")).normals, 1u);

@@ -62,6 +62,9 @@ class LoadMesh : public ::testing::Test {
   }
   Result<TriMesh> load(const std::string& file) { return loadMesh({.file = file}, said_.exec); }
   Result<TriMesh> loadObj(const TriMesh& mesh) { return load(write("a.obj", obj(mesh))); }
+  Result<TriMesh> loadStrict(const TriMesh& mesh) {
+    return loadMesh({.file = write("a.obj", obj(mesh)), .repair = RepairMode::Strict}, said_.exec);
+  }
   /// The error's text; a test failure where there is none.
   static std::string refused(const Result<TriMesh>& mesh) {
     EXPECT_FALSE(mesh.ok());
@@ -191,41 +194,56 @@ TEST_F(LoadMesh, TurnsWhatIsInsideOutAndSaysSo) {
   auto mesh = loadObj(families::reversed(cube()));
   ASSERT_TRUE(mesh.ok());
   EXPECT_DOUBLE_EQ(solidVolume(mesh->positions, mesh->triangles), 1);
-  EXPECT_TRUE(said_.warning("turned 1 part that was inside out"));
+  EXPECT_TRUE(said_.info("turned 1 part that was inside out"));
   mesh = loadObj(families::joined(cube(), families::reversed(cube(2, 3))));
   ASSERT_TRUE(mesh.ok());
   EXPECT_DOUBLE_EQ(solidVolume(mesh->positions, mesh->triangles), 2);
   mesh = loadObj(families::joined(cube(0, 2), cube(0.5, 1.5)));
   ASSERT_TRUE(mesh.ok());
-  EXPECT_DOUBLE_EQ(solidVolume(mesh->positions, mesh->triangles), 7);
-  EXPECT_TRUE(said_.warning("turned the wall of 1 void"));
+  EXPECT_DOUBLE_EQ(solidVolume(mesh->positions, mesh->triangles), 8);
+  EXPECT_TRUE(said_.info("left out 1 part within the solid that faced outward"));
   TriMesh mixed = cube();
   std::swap(mixed.triangles[4][0], mixed.triangles[4][1]);
   ASSERT_TRUE(loadObj(mixed).ok());
-  EXPECT_TRUE(said_.warning("turned 1 triangle that faced the other way"));
+  EXPECT_TRUE(said_.info("turned 1 face that faced the other way"));
 }
 
-TEST_F(LoadMesh, RefusesWithCountPlaceAndRemedy) {
+TEST_F(LoadMesh, StrictRefusesWithCountPlaceAndRemedy) {
   TriMesh open = cube();
   open.triangles.pop_back();
-  EXPECT_TRUE(holds(refused(loadObj(open)), "3 open edges (the first near ("));
-  EXPECT_TRUE(holds(refused(loadObj(open)), "fill the holes"));
-  EXPECT_TRUE(holds(refused(loadObj(families::joined(cube(), cube(0.5, 2)))), "intersecting triangles"));
-  EXPECT_TRUE(holds(refused(loadObj(families::joined(cube(), box(Vec3(1, 1, 0), Vec3(2, 2, 1))))),
+  EXPECT_TRUE(holds(refused(loadStrict(open)), "3 open edges (the first near ("));
+  EXPECT_TRUE(holds(refused(loadStrict(open)), "fill the holes"));
+  EXPECT_TRUE(holds(refused(loadStrict(families::joined(cube(), cube(0.5, 2)))), "intersecting triangles"));
+  EXPECT_TRUE(holds(refused(loadStrict(families::joined(cube(), box(Vec3(1, 1, 0), Vec3(2, 2, 1))))),
                     "1 edge with more than two triangles near (1, 1, 0.5)"));
-  EXPECT_TRUE(holds(refused(loadObj(families::joined(cube(), cube(1, 2)))),
+  EXPECT_TRUE(holds(refused(loadStrict(families::joined(cube(), cube(1, 2)))),
                     "1 vertex where separate parts touch near (1, 1, 1)"));
   TriMesh twice = cube();
   twice.triangles.push_back(twice.triangles[3]);
-  EXPECT_TRUE(holds(refused(loadObj(twice)), "1 duplicate triangle near ("));
+  EXPECT_TRUE(holds(refused(loadStrict(twice)), "1 duplicate triangle near ("));
   TriMesh flat = cube();
   for (Vec3& p : flat.positions) p.y() = 0.5;
-  EXPECT_FALSE(loadObj(flat).ok());
+  EXPECT_FALSE(loadStrict(flat).ok());
+  EXPECT_TRUE(holds(refused(loadStrict(families::reversed(cube()))), "1 part turned inside out"));
+}
+
+TEST_F(LoadMesh, MendsWhatIsBrokenAndSaysSo) {
+  TriMesh open = cube();
+  open.triangles.pop_back();
+  auto mesh = loadObj(open);
+  ASSERT_TRUE(mesh.ok()) << mesh.error().text();
+  EXPECT_DOUBLE_EQ(solidVolume(mesh->positions, mesh->triangles), 1);
+  EXPECT_TRUE(said_.warning("filled 1 large hole"));
+  mesh = loadObj(families::joined(cube(), cube(0.5, 2)));
+  ASSERT_TRUE(mesh.ok()) << mesh.error().text();
+  EXPECT_DOUBLE_EQ(solidVolume(mesh->positions, mesh->triangles), 1 + 3.375 - 0.125);
+  EXPECT_TRUE(said_.info("into one outer surface"));
 }
 
 TEST_F(LoadMesh, PlacesAreThoseOfTheFile) {
   const std::string file = write("a.obj", obj(families::joined(cube(), cube(1, 2))));
-  const std::string text = refused(loadMesh({.file = file, .up = UpAxis::Z, .length = 10}, {}));
+  const std::string text =
+      refused(loadMesh({.file = file, .up = UpAxis::Z, .length = 10, .repair = RepairMode::Strict}, {}));
   EXPECT_TRUE(holds(text, "touch near (1, 1, 1)")) << text;
 }
 

@@ -243,6 +243,8 @@ TEST(ArchiveChecks, Fragments) {
   EXPECT_FALSE(accepted<Fragments>([](Fragments& f) { f.pieces[1].surfaceCut.pop_back(); }));
   EXPECT_FALSE(accepted<Fragments>([](Fragments& f) { f.pieces[1].crackNeighbour[0] = 2; }));
   EXPECT_FALSE(accepted<Fragments>([](Fragments& f) { f.pieces[1].crackNeighbour.clear(); }));
+  EXPECT_FALSE(accepted<Fragments>([](Fragments& f) { f.pieces[1].crackSheet[0] = -1; }));
+  EXPECT_FALSE(accepted<Fragments>([](Fragments& f) { f.pieces[1].crackSheet.clear(); }));
   EXPECT_FALSE(accepted<Fragments>([](Fragments& f) { f.tets = nullptr; }));
 }
 

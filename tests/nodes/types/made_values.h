@@ -119,6 +119,7 @@ inline Piece piece(const char* name, Index cell) {
   p.surfaceCut = {-1, 0};
   p.crack = {{3, 2, 1}};
   p.crackNeighbour = {1 - cell};
+  p.crackSheet = {0};
   p.volume = 0.1;
   p.centreOfMass = Vec3(1, -0.0, 2);
   p.inertia << 1, 2, 3, 4, 5, 6, 7, 8, -0.0;

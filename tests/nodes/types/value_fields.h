@@ -85,8 +85,8 @@ auto of(Maybe<Partition> auto& v) {
   return std::tie(a, b, c, d, e, f, g, h, i);
 }
 auto of(Maybe<Piece> auto& v) {
-  auto& [a, b, c, d, e, f, g, h, i, j] = v;
-  return std::tie(a, b, c, d, e, f, g, h, i, j);
+  auto& [a, b, c, d, e, f, g, h, i, j, k] = v;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
 auto of(Maybe<FractureCounts> auto& v) {
   auto& [a, b, c, d, e, f, g] = v;

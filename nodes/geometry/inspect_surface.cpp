@@ -1,4 +1,4 @@
-#include "load_mesh/inspect_surface.h"
+#include "geometry/inspect_surface.h"
 
 #include <algorithm>
 #include <array>
@@ -6,9 +6,9 @@
 #include <cstdio>
 
 #include "geometry/edge_table.h"
-#include "load_mesh/orient.h"
-#include "load_mesh/self_intersections.h"
-#include "load_mesh/vertex_fans.h"
+#include "geometry/orient.h"
+#include "geometry/self_intersections.h"
+#include "geometry/vertex_fans.h"
 
 namespace sherd {
 namespace {

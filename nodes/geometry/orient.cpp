@@ -1,4 +1,4 @@
-#include "load_mesh/orient.h"
+#include "geometry/orient.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "load_mesh/inspect_surface.h"
+#include "geometry/inspect_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "geometry/exact_points.h"
-#include "load_mesh/self_intersections.h"
-#include "load_mesh/weld.h"
+#include "geometry/self_intersections.h"
+#include "geometry/weld.h"
 #include "support/surface_families.h"
 
 namespace sherd {

@@ -1,4 +1,4 @@
-#include "load_mesh/vertex_fans.h"
+#include "geometry/vertex_fans.h"
 
 #include <algorithm>
 

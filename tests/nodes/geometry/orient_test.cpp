@@ -1,11 +1,11 @@
-#include "load_mesh/orient.h"
+#include "geometry/orient.h"
 
 #include <gtest/gtest.h>
 
 #include "base/rng.h"
 #include "geometry/solid.h"
-#include "load_mesh/inspect_surface.h"
-#include "load_mesh/weld.h"
+#include "geometry/inspect_surface.h"
+#include "geometry/weld.h"
 #include "support/surface_families.h"
 
 namespace sherd {

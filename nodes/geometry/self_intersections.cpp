@@ -1,11 +1,11 @@
-#include "load_mesh/self_intersections.h"
+#include "geometry/self_intersections.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "load_mesh/box_tree.h"
+#include "geometry/box_tree.h"
 
 namespace sherd {
 namespace {
@@ -69,11 +69,14 @@ bool intersect(const Soup& soup, Index s, Index t) {
                         soup.corner(t, 3 - ofT));
 }
 
-}  // namespace
+/// What one block of triangles meets among those with higher numbers.
+struct Block {
+  std::vector<std::array<Index, 2>> pairs;
+  bool more = false;
+};
 
-SelfIntersections findSelfIntersections(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                                        const Exec& exec, std::size_t limit) {
-  SelfIntersections result;
+std::vector<Block> meetings(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                            const Exec& exec, std::size_t limit) {
   Soup soup{toPoints(positions), triangles, std::vector<bool>(triangles.size(), false)};
   for (const Index t : zeroAreaTriangles(positions, triangles)) soup.flat[at(t)] = true;
   std::vector<Box> boxes(triangles.size());
@@ -81,25 +84,62 @@ SelfIntersections findSelfIntersections(std::span<const Vec3> positions, std::sp
     for (const Index v : triangles[t]) boxes[t].add(positions[at(v)]);
   const BoxTree tree(boxes);
 
-  std::vector<SelfIntersections> ofBlock((triangles.size() + kBlock - 1) / kBlock);
+  std::vector<Block> blocks((triangles.size() + kBlock - 1) / kBlock);
   parallelFor(exec, triangles.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    SelfIntersections& found = ofBlock[begin / kBlock];
+    Block& found = blocks[begin / kBlock];
     for (std::size_t i = begin; i < end && !found.more && !exec.cancelled(); ++i) {
       const auto s = static_cast<Index>(i);
       if (soup.flat[i]) continue;
       tree.visitOverlaps(boxes[i], [&](Index t) {
         if (t <= s || soup.flat[at(t)] || found.more || !intersect(soup, s, t)) return;
-        if (found.pairs == 0 || std::array{s, t} < found.first) found.first = {s, t};
-        found.more = ++found.pairs >= limit;
+        found.pairs.push_back({s, t});
+        found.more = found.pairs.size() >= limit;
       });
     }
   });
-  for (const SelfIntersections& block : ofBlock) {
-    if (result.pairs == 0) result.first = block.first;
-    result.pairs += block.pairs;
+  for (Block& block : blocks) std::sort(block.pairs.begin(), block.pairs.end());
+  return blocks;
+}
+
+}  // namespace
+
+SelfIntersections findSelfIntersections(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                                        const Exec& exec, std::size_t limit) {
+  SelfIntersections result;
+  for (const Block& block : meetings(positions, triangles, exec, limit)) {
+    if (result.pairs == 0 && !block.pairs.empty()) result.first = block.pairs[0];
+    result.pairs += block.pairs.size();
     result.more = result.more || block.more;
   }
   return result;
+}
+
+IntersectingPairs intersectingPairs(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                                    const Exec& exec, std::size_t limit) {
+  IntersectingPairs result;
+  for (const Block& block : meetings(positions, triangles, exec, limit)) {
+    result.pairs.insert(result.pairs.end(), block.pairs.begin(), block.pairs.end());
+    result.more = result.more || block.more;
+  }
+  return result;
+}
+
+bool trianglesMeet(std::span<const Vec3> positions, const Triangle& s, const Triangle& t) {
+  std::array<Triangle, 2> pair{s, t};
+  Soup soup{{}, pair, {}};
+  std::vector<Index> corners;
+  for (Triangle& triangle : pair)
+    for (Index& v : triangle) {
+      const auto known = std::find(corners.begin(), corners.end(), v);
+      const auto number = static_cast<Index>(known - corners.begin());
+      if (known == corners.end()) {
+        const Vec3& p = positions[at(v)];
+        soup.points.emplace_back(p.x(), p.y(), p.z());
+        corners.push_back(v);
+      }
+      v = number;
+    }
+  return intersect(soup, 0, 1);
 }
 
 std::vector<Index> zeroAreaTriangles(std::span<const Vec3> positions, std::span<const Triangle> triangles) {

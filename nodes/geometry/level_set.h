@@ -24,6 +24,11 @@ class LevelSet {
 
   double voxel() const { return voxel_; }
   double band() const { return band_; }
+  /// Calls visit(i, j, k) for every voxel within the band, in an order that depends on the surface alone. The
+  /// centre of voxel (i, j, k) is voxel() · (i, j, k).
+  void visitBand(const std::function<void(int, int, int)>& visit) const;
+  /// A function (i, j, k) → distance at that voxel's centre. As with sampler(), one per thread.
+  std::function<double(int, int, int)> values() const;
   /// A function x → distance (trilinear, negative inside), ±band beyond the band. Each has a cache of its
   /// own: one per thread; must not outlive the LevelSet.
   std::function<double(const Vec3&)> sampler() const;

@@ -26,6 +26,18 @@ struct SelfIntersections {
 SelfIntersections findSelfIntersections(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                                         const Exec& exec, std::size_t limit = 100);
 
+/// The pairs themselves, each ascending, in ascending order; pairs of the same three corners are not among
+/// them. `limit` as above, so that the list ends early where there are very many: `more` tells.
+struct IntersectingPairs {
+  std::vector<std::array<Index, 2>> pairs;
+  bool more = false;
+};
+IntersectingPairs intersectingPairs(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                                    const Exec& exec, std::size_t limit);
+
+/// Do triangles s and t meet so? Neither has zero area.
+bool trianglesMeet(std::span<const Vec3> positions, const Triangle& s, const Triangle& t);
+
 /// Triangles whose corners lie on one line, ascending.
 std::vector<Index> zeroAreaTriangles(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 

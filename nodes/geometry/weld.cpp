@@ -1,4 +1,4 @@
-#include "load_mesh/weld.h"
+#include "geometry/weld.h"
 
 #include <bit>
 #include <unordered_map>

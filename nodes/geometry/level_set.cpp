@@ -1,4 +1,4 @@
-#include "tetrahedralize/level_set.h"
+#include "geometry/level_set.h"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
@@ -128,6 +128,19 @@ LevelSet::LevelSet(std::span<const Vec3> positions, std::span<const Triangle> tr
 
 LevelSet::~LevelSet() = default;
 LevelSet::LevelSet(LevelSet&&) noexcept = default;
+
+void LevelSet::visitBand(const std::function<void(int, int, int)>& visit) const {
+  for (auto it = impl_->grid->cbeginValueOn(); it; ++it) {
+    const openvdb::Coord c = it.getCoord();
+    visit(c.x(), c.y(), c.z());
+  }
+}
+
+std::function<double(int, int, int)> LevelSet::values() const {
+  return [accessor = impl_->grid->getConstAccessor(), voxel = voxel_](int i, int j, int k) {
+    return voxel * static_cast<double>(accessor.getValue(openvdb::Coord(i, j, k)));
+  };
+}
 
 std::function<double(const Vec3&)> LevelSet::sampler() const {
   return [accessor = impl_->grid->getConstAccessor(), voxel = voxel_](const Vec3& x) {
