@@ -21,7 +21,6 @@ constexpr double kCountTolerance = 0.1;  ///< of the number of tetrahedra, that 
 constexpr int kSearchRuns = 4;           ///< runs of Mesh_3 for the number of tetrahedra
 constexpr int kTries = 5;                ///< further ones for enclosure, topology and gaps
 constexpr double kMoreTets = 4;          ///< times as many where none of these gave a cage
-constexpr double kHairline = 2e-3;       ///< in sizes of the object: wider gaps are kept open, or it fails
 constexpr double kPerturbBound = 12, kExudeBound = 14;  ///< degrees
 constexpr std::size_t kMostTets = 20;          ///< times the number aimed at, that gaps may ask for …
 constexpr std::size_t kAlwaysAllowed = 40000;  ///< … or this many
@@ -203,8 +202,7 @@ class CageBuilder {
   void chooseGaps() {
     sizes_.open.clear();
     for (const Gap& gap : gaps_)
-      if (!(mayClose(gap) && gap.width <= closedGaps_) &&
-          gap.detour > std::max((smallGapsToo_ ? 0.3 : 1.0) * nominal_, 1.3 * gap.width))
+      if (gap.detour > std::max((smallGapsToo_ ? 0.3 : 1.0) * nominal_, 1.3 * gap.width))
         sizes_.open.push_back(gap);
   }
 
@@ -217,29 +215,11 @@ class CageBuilder {
     field_ = std::make_unique<CageField>(surface_, tree_, sizes_, levelSet_, exec_);
     if (exec_.cancelled()) return cancelledError();
     const std::size_t most = std::max(kAlwaysAllowed, kMostTets * static_cast<std::size_t>(aimedTets()));
-    if (const double expected = field_->expectedTets(); expected > static_cast<double>(most)) {
-      if (!giveUpHairline()) return tooMany(expected);
-      return meshOnce();
-    }
+    if (const double expected = field_->expectedTets(); expected > static_cast<double>(most))
+      return tooMany(expected);
     const VolumeToMesh volume = field_->volume();
     if (exec_.cancelled()) return cancelledError();
     return VolumeMesh::refine(volume, exec_);
-  }
-
-  /// May the gap be closed where it would take too many tetrahedra to keep it open? Hardly wider than a
-  /// crack, and the way round it no longer than two edges: distances are not known better anyway.
-  bool mayClose(const Gap& gap) const { return gap.width <= kHairline && gap.detour <= 2 * nominal_; }
-
-  /// Lets the narrowest of such gaps close, up to twice its width at a time. False where there are none.
-  bool giveUpHairline() {
-    const Gap* narrowest = nullptr;
-    for (const Gap& gap : sizes_.open)
-      if (mayClose(gap) && (narrowest == nullptr || gap.width < narrowest->width)) narrowest = &gap;
-    if (narrowest == nullptr) return false;
-    closedPlace_ = *narrowest;
-    closedGaps_ = std::max(2 * narrowest->width, 1e-6);
-    chooseGaps();
-    return true;
   }
 
   double aimedTets() const {
@@ -382,9 +362,6 @@ class CageBuilder {
     fillInsideFractions(cage, mesh_->positions, mesh_->triangles, exec_);
     linkSurface(cage, exec_);
     if (exec_.cancelled()) return cancelledError();
-    if (closedGaps_ > 0)
-      exec_.warn(gapText(closedPlace_) +
-                 " and others as narrow are closed in the tetrahedra: cracks may jump them");
     cage.quality = measureQuality(cage, mesh_->positions, mesh_->triangles);
     exec_.progress(1);
     return cage;
@@ -403,8 +380,6 @@ class CageBuilder {
   double nominal_ = 0;    ///< the edge length that the number of tetrahedra stands for without any gap
   std::vector<Gap> gaps_;
   bool smallGapsToo_ = false;
-  double closedGaps_ = 0;  ///< gaps up to this width that may be closed are
-  Gap closedPlace_{};      ///< one of them
   CageSizes sizes_;
   std::shared_ptr<const LevelSet> levelSet_;
   std::unique_ptr<CageField> field_;

@@ -25,8 +25,6 @@
 //
 // Parts of the surface may touch in a point or along an edge, each with vertices of its own there (as
 // SelectPiece makes them): the cage joins them, so there its topology may be that of the joined parts.
-// A notch hardly wider than a crack (0.2 % of the object), with a way round of at most two edges, is let
-// close where keeping it open would take too many tetrahedra; a warning names its place.
 #pragma once
 
 #include <memory>

@@ -148,7 +148,7 @@ TEST(ConvexProxies, AVoidIsNoPartOfTheVolume) {
 }
 
 TEST(ConvexProxies, RandomBodiesAreHeldByConvexHullsThatDoNotOverlap) {
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const TriMesh mesh = boulder(seed);
     const PieceProxy one = proxyOf(mesh, {.maxHulls = 1});
     ASSERT_EQ(one.hulls.size(), 1u);
