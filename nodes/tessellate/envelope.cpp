@@ -12,8 +12,8 @@ namespace sherd {
 namespace {
 
 constexpr std::size_t kBlock = 32;  ///< tetrahedra a task
-constexpr double kWellConditioned =
-    1e-13;  ///< relative error of a position up to which doubles are good enough
+/// Relative error bound in doubles up to which extended precision is right to the last digit.
+constexpr double kExtendedWillDo = 2e-12;
 
 /// Names a vertex: nodes and ranks, each ascending and padded with −1.
 struct VertexName {
