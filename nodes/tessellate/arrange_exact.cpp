@@ -224,7 +224,7 @@ class Arranger {
     const Vec3 direction = to - from;
     const double along = (a_.positions[at(y.vertex)] - a_.positions[at(x.vertex)]).dot(direction);
     if (std::abs(along) > 1e-11 * direction.squaredNorm() + slack(from, to, direction)) return along > 0;
-    const std::array<SurfaceVertex, 2> ends{{{p, from}, {q, to}}};
+    const std::array<Vec3, 2> ends{from, to};
     const auto frame = [&](const Crossing& c) {
       return TetFrame(tets_, values_, sheets_.polygons[at(c.through)].tet);
     };
@@ -251,27 +251,25 @@ class Arranger {
     const double size = 1e-11 * (box.diagonal() + direction.norm());
     if (direction.norm() > size && std::abs(along) > size * direction.norm() + slack(from, to, direction))
       return along > 0;
-    return compareOnSheet(x, y) < 0;
+    return isBeforeExactly(x, y);
   }
 
-  int compareOnSheet(const Crossing& x, const Crossing& y) const {
+  bool isBeforeExactly(const Crossing& x, const Crossing& y) const {
     const auto [polygon, slot] = polygonAt(x.edge);
-    const SheetPolygon& p = sheets_.polygons[at(polygon)];
-    const TetFrame frame(tets_, values_, p.tet);
+    const TetFrame frame(tets_, values_, sheets_.polygons[at(polygon)].tet);
     const auto [back, front] = exact_.ranks[at(polygon)];
     const SheetEdgeLine& line = linesOf(polygon)[at(slot)];
     const AffineFunction border =
         line.face >= 0 ? TetFrame::cornerFunction(line.face) : frame.differenceFunction(line.third, back);
-    std::array<std::array<SurfaceVertex, 3>, 2> triangles;
+    std::array<std::array<Vec3, 3>, 2> triangles;
     for (std::size_t c = 0; c < 3; ++c) {
-      const Index i = triangles_[at(x.through)][c], j = triangles_[at(y.through)][c];
-      triangles[0][c] = {i, positions_[at(i)]};
-      triangles[1][c] = {j, positions_[at(j)]};
+      triangles[0][c] = positions_[at(triangles_[at(x.through)][c])];
+      triangles[1][c] = positions_[at(triangles_[at(y.through)][c])];
     }
-    // Seen from the front the border turns counter-clockwise: along ∇(g_front − g_back) × ∇border.
-    const int order = compareAlongLine(frame.corners, border, frame.differenceFunction(front, back),
-                                       triangles[0], triangles[1]);
-    return sheets_.forward(p, slot) ? order : -order;
+    // x comes first where it lies on the side of y's triangle that the edge comes from.
+    const int side = sideOfMeeting(frame.corners, border, frame.differenceFunction(front, back), triangles[0],
+                                   triangles[1]);
+    return side == (y.fromFront ? 1 : -1);
   }
 
   /// A polygon with this edge, and the edge's place in it.

@@ -231,15 +231,30 @@ ClippedMeshes clip(const Arrangement& arrangement, const Sheets& sheets, const E
 }
 
 CornerWeights barycentric(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& point) {
+  const std::array<Vec3, 3> corner{a, b, c};
+  const auto residual = [&](const CornerWeights& w) {
+    return (w[0] * (a - point) + w[1] * (b - point) + w[2] * (c - point)).squaredNorm();
+  };
+  CornerWeights best = CornerWeights::Constant(1.0 / 3);
   const Vec3 normal = (b - a).cross(c - a);
-  const double area2 = normal.squaredNorm();
-  if (!(area2 > 0)) return CornerWeights::Constant(1.0 / 3);
-  CornerWeights w;
-  w[1] = (point - a).cross(c - a).dot(normal) / area2;
-  w[2] = (b - a).cross(point - a).dot(normal) / area2;
-  w[0] = 1 - w[1] - w[2];
-  w = w.cwiseMax(0.0);
-  return w / w.sum();
+  if (const double area2 = normal.squaredNorm(); area2 > 0) {
+    best[1] = (point - a).cross(c - a).dot(normal) / area2;
+    best[2] = (b - a).cross(point - a).dot(normal) / area2;
+    best[0] = 1 - best[1] - best[2];
+    best = best.cwiseMax(0.0);
+    best /= best.sum();
+  }
+  // In a sliver areas lose their digits, and the nearest point of a side serves better.
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Index j = (i + 1) % 3;
+    const Vec3 &p = corner[static_cast<std::size_t>(i)], side = corner[static_cast<std::size_t>(j)] - p;
+    const double length2 = side.squaredNorm();
+    CornerWeights w = CornerWeights::Unit(i);
+    if (length2 > 0) w[j] = std::clamp((point - p).dot(side) / length2, 0.0, 1.0);
+    w[i] = 1 - w[j];
+    if (residual(w) < residual(best)) best = w;
+  }
+  return best;
 }
 
 }  // namespace sherd

@@ -64,7 +64,7 @@ AffineFunction TetFrame::cornerFunction(int corner) {
   return f;
 }
 
-int TetFrame::sign(const SurfaceVertex& vertex, const std::array<Approx, 4>& coordinates, Index plus,
+int TetFrame::sign(const Vec3& vertex, const std::array<Approx, 4>& coordinates, Index plus,
                    Index minus) const {
   if (const int s = difference(coordinates, plus, minus).sign(); s != 0) return s;
   const AffineFunction f = differenceFunction(plus, minus);
@@ -74,8 +74,8 @@ int TetFrame::sign(const SurfaceVertex& vertex, const std::array<Approx, 4>& coo
 TriangleInTet::TriangleInTet(const TetFrame& frame, const Triangle& corners, std::span<const Vec3> positions)
     : frame_(frame) {
   for (std::size_t c = 0; c < 3; ++c) {
-    vertices_[c] = {corners[c], positions[at(corners[c])]};
-    coordinates_[c] = frame.coordinates(vertices_[c].point);
+    vertices_[c] = positions[at(corners[c])];
+    coordinates_[c] = frame.coordinates(vertices_[c]);
   }
 }
 
@@ -104,7 +104,7 @@ int TriangleInTet::determinantSign(std::span<const std::size_t> corners,
                        ? minor(0, 0, 1)
                        : m[0][0] * minor(1, 1, 2) - m[0][1] * minor(1, 0, 2) + m[0][2] * minor(1, 0, 1);
   if (const int s = d.sign(); s != 0) return s;
-  std::array<SurfaceVertex, 3> points;
+  std::array<Vec3, 3> points;
   std::array<AffineFunction, 3> exact;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     points[i] = vertices_[corners[i]];
@@ -174,7 +174,7 @@ std::array<double, 3> TriangleInTet::weights(const SegmentEnd& end) const {
     return result;
   }
   const std::size_t n = onSide ? 2 : 3;
-  std::array<SurfaceVertex, 3> points;
+  std::array<Vec3, 3> points;
   for (std::size_t i = 0; i < n; ++i) points[i] = vertices_[corners[i]];
   std::array<AffineFunction, 2> functions{affine(kSheet)};
   if (!onSide) functions[1] = affine(static_cast<int>(end.slot));

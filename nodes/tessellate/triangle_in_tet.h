@@ -25,8 +25,7 @@ struct TetFrame {
   AffineFunction differenceFunction(Index plus, Index minus) const;
   static AffineFunction cornerFunction(int corner);
   /// Sign of g_plus − g_minus at a surface vertex, with ties.
-  int sign(const SurfaceVertex& vertex, const std::array<Approx, 4>& coordinates, Index plus,
-           Index minus) const;
+  int sign(const Vec3& vertex, const std::array<Approx, 4>& coordinates, Index plus, Index minus) const;
 };
 
 /// An end of a segment: on side `side` of the triangle, or else on the polygon's edge number `slot`.
@@ -61,7 +60,7 @@ class TriangleInTet {
   int signAtEnd(const SegmentEnd& end, int function) const;
 
   const TetFrame& frame_;
-  std::array<SurfaceVertex, 3> vertices_;
+  std::array<Vec3, 3> vertices_;
   std::array<std::array<Approx, 4>, 3> coordinates_;
   Index back_ = -1, front_ = -1;
   std::span<const SheetEdgeLine> lines_;
