@@ -150,9 +150,9 @@ void run(const std::string& family, AdversarialCase (*make)(std::uint64_t), Tess
 constexpr TessellateParams kExact{.cells = CellMode::Exact}, kCanonical{.cells = CellMode::Canonical};
 constexpr TessellateParams kConforming{.cells = CellMode::Exact, .surface = SurfaceMode::Conforming};
 
-TEST(Stability, ExactCells) { run("exact", adversarialCase, kExact, 1, 120, false); }
-TEST(Stability, CanonicalCells) { run("canonical", adversarialCase, kCanonical, 1, 80, false); }
-TEST(Stability, ConformingSurfaces) { run("conforming", conformingCase, kConforming, 1, 60, false); }
+TEST(Stability, ExactCells) { run("exact", adversarialCase, kExact, 1, 110, false); }
+TEST(Stability, CanonicalCells) { run("canonical", adversarialCase, kCanonical, 1, 60, false); }
+TEST(Stability, ConformingSurfaces) { run("conforming", conformingCase, kConforming, 1, 50, false); }
 TEST(SlowStability, ExactCells) { run("exact", adversarialCase, kExact, 1, 10000, true); }
 TEST(SlowStability, CanonicalCells) { run("canonical", adversarialCase, kCanonical, 1, 10000, true); }
 TEST(SlowStability, ConformingSurfaces) { run("conforming", conformingCase, kConforming, 1, 10000, true); }
