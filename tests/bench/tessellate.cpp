@@ -213,7 +213,7 @@ void scaling(const Options& options, std::string& report) {
         const TriMesh both = families::joined(roundedCube(Vec3(-2, 0, 0), 1, 10000),
                                               roundedCube(Vec3(2, 0, 0), 1, static_cast<std::size_t>(n)));
         std::vector<Vec3> sites = sitesInBall(Vec3(-2, 0, 0), 0.9, 20, 1);
-        sites.push_back(Vec3(3, 0, 0));
+        sites.push_back(Vec3(2, 0, 0));
         return std::make_shared<const Partition>(test::euclideanCells(blockAround(both, 30), sites));
       },
       options, report, plots);
