@@ -12,7 +12,7 @@
 // the
 //          tetrahedra
 // Times are medians of 20 (or of N). Writes one CSV, Markdown table and SVG plot per part into the directory
-// (default build/bench_tessellate), and all tables into a section of FILE.md. Other arguments are Google
+// (default build/bench_tessellate), and all tables into sections of FILE.md. Other arguments are Google
 // Benchmark's. Models of ../shared/meshes that are absent are left out, and said.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -213,7 +213,7 @@ void scaling(const Options& options, std::string& report) {
         const TriMesh both = families::joined(roundedCube(Vec3(-2, 0, 0), 1, 10000),
                                               roundedCube(Vec3(2, 0, 0), 1, static_cast<std::size_t>(n)));
         std::vector<Vec3> sites = sitesInBall(Vec3(-2, 0, 0), 0.9, 20, 1);
-        sites.push_back(Vec3(3, 0, 0));
+        sites.push_back(Vec3(2, 0, 0));
         return std::make_shared<const Partition>(test::euclideanCells(blockAround(both, 30), sites));
       },
       options, report, plots);
@@ -352,11 +352,15 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   const Options options = read(argc, argv);
   fs::create_directories(options.out);
-  std::string report;
-  if (options.parts.count("paper")) paper(options, report);
-  if (options.parts.count("scaling")) scaling(options, report);
-  if (options.parts.count("error")) error(options, report);
-  writeSection(options.out / "results.md", "bench_tessellate", report);
-  if (!options.results.empty()) writeSection(options.results, "bench_tessellate", report);
+  const std::pair<const char*, void (*)(const Options&, std::string&)> parts[] = {
+      {"paper", paper}, {"scaling", scaling}, {"error", error}};
+  for (const auto& [part, measure] : parts) {
+    if (!options.parts.count(part)) continue;
+    std::string report;
+    measure(options, report);
+    const std::string section = std::string("bench_tessellate ") + part;
+    writeSection(options.out / "results.md", section, report);
+    if (!options.results.empty()) writeSection(options.results, section, report);
+  }
   return 0;
 }

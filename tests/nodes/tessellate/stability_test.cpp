@@ -147,14 +147,15 @@ void run(const std::string& family, AdversarialCase (*make)(std::uint64_t), Tess
         totals.forced, totals.renamedDiffer);
 }
 
-TEST(Stability, ExactCells) { run("exact", adversarialCase, {.cells = CellMode::Exact}, 1, 150, false); }
-TEST(Stability, CanonicalCells) {
-  run("canonical", adversarialCase, {.cells = CellMode::Canonical}, 1, 150, false);
-}
-TEST(SlowStability, ExactCells) { run("exact", adversarialCase, {.cells = CellMode::Exact}, 1, 10000, true); }
-TEST(SlowStability, CanonicalCells) {
-  run("canonical", adversarialCase, {.cells = CellMode::Canonical}, 1, 10000, true);
-}
+constexpr TessellateParams kExact{.cells = CellMode::Exact}, kCanonical{.cells = CellMode::Canonical};
+constexpr TessellateParams kConforming{.cells = CellMode::Exact, .surface = SurfaceMode::Conforming};
+
+TEST(Stability, ExactCells) { run("exact", adversarialCase, kExact, 1, 110, false); }
+TEST(Stability, CanonicalCells) { run("canonical", adversarialCase, kCanonical, 1, 60, false); }
+TEST(Stability, ConformingSurfaces) { run("conforming", conformingCase, kConforming, 1, 50, false); }
+TEST(SlowStability, ExactCells) { run("exact", adversarialCase, kExact, 1, 10000, true); }
+TEST(SlowStability, CanonicalCells) { run("canonical", adversarialCase, kCanonical, 1, 10000, true); }
+TEST(SlowStability, ConformingSurfaces) { run("conforming", conformingCase, kConforming, 1, 10000, true); }
 
 }  // namespace
 }  // namespace sherd::test
