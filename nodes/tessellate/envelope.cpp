@@ -303,10 +303,9 @@ std::vector<BlockPolygons> polygonsInBlocks(const TetMesh& tets, const SiteValue
   std::vector<BlockPolygons> blocks((n + kBlock - 1) / kBlock);
   parallelFor(exec, n, kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<Index> candidates;
-    std::vector<unsigned char> scratch;
     for (std::size_t t = begin; t < end; ++t) {
       if (liesOutside(tets, t)) continue;
-      values.candidates(tets.tets[t], candidates, scratch);
+      values.candidates(tets.tets[t], candidates);
       if (candidates.size() > 1)
         TetEnvelope(tets, values, static_cast<Index>(t)).addPolygons(candidates, blocks[begin / kBlock]);
     }

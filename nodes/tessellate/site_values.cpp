@@ -1,6 +1,7 @@
 #include "tessellate/site_values.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -23,15 +24,23 @@ std::vector<Index> sitesByRank(const Eigen::MatrixXd& sites) {
   return order;
 }
 
-/// Marks what a site of rank w, with values g_w at the four nodes, undercuts: there it is less, or equal and
-/// of lower rank.
-template <class Undercuts>
-void mark(const std::array<const double*, 4>& g, std::size_t w, std::size_t begin, std::size_t end,
-          Undercuts undercuts, unsigned char* marked) {
-  const double a = g[0][w], b = g[1][w], c = g[2][w], d = g[3][w];
-  for (std::size_t k = begin; k < end; ++k)
-    marked[k] |= static_cast<unsigned char>(undercuts(a, g[0][k]) & undercuts(b, g[1][k]) &
-                                            undercuts(c, g[2][k]) & undercuts(d, g[3][k]));
+/// Does the site of rank w undercut that of rank k: less, or equal and of lower rank, at all four nodes?
+bool undercuts(const std::array<const double*, 4>& g, Index w, Index k) {
+  if (w < k) return g[0][w] <= g[0][k] && g[1][w] <= g[1][k] && g[2][w] <= g[2][k] && g[3][w] <= g[3][k];
+  return g[0][w] < g[0][k] && g[1][w] < g[1][k] && g[2][w] < g[2][k] && g[3][w] < g[3][k];
+}
+
+/// Per node the largest distance to a neighbour.
+std::vector<double> longestEdges(const Eigen::MatrixXd& nodes, std::span<const Tetra> tets) {
+  std::vector<double> longest(static_cast<std::size_t>(nodes.cols()), 0);
+  for (const Tetra& t : tets)
+    for (const auto& e : kTetraEdge) {
+      const Index a = t[static_cast<std::size_t>(e[0])], b = t[static_cast<std::size_t>(e[1])];
+      const double length = (nodes.col(a) - nodes.col(b)).norm();
+      longest[static_cast<std::size_t>(a)] = std::max(longest[static_cast<std::size_t>(a)], length);
+      longest[static_cast<std::size_t>(b)] = std::max(longest[static_cast<std::size_t>(b)], length);
+    }
+  return longest;
 }
 
 }  // namespace
@@ -55,26 +64,51 @@ SiteValues::SiteValues(const Partition& partition, const Exec& exec) : siteOf_(s
       least_[static_cast<std::size_t>(n)] = static_cast<Index>(std::min_element(g, g + siteOf_.size()) - g);
     }
   });
+  if (!exec.cancelled()) findNear(nodes, partition.embedding->tets->tets, exec);
 }
 
-void SiteValues::candidates(const Tetra& nodes, std::vector<Index>& out,
-                            std::vector<unsigned char>& scratch) const {
-  const std::size_t n = siteCount();
+/// A site that is least at a point x of a tetrahedron around node n is no farther from n than the least there
+/// by more than twice the way from n to x: |n − p| ≤ |n − x| + |x − p| ≤ |n − x| + |x − q| ≤ 2 |n − x| + |n −
+/// q|.
+void SiteValues::findNear(const Eigen::MatrixXd& nodes, std::span<const Tetra> tets, const Exec& exec) {
+  const std::vector<double> longest = longestEdges(nodes, tets);
+  const Eigen::VectorXd mean = nodes.rowwise().mean();
+  near_.resize(longest.size());
+  parallelFor(exec, longest.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const double* g = at(static_cast<Index>(n));
+      const double squared = (nodes.col(static_cast<Eigen::Index>(n)) - mean).squaredNorm();
+      const double lowest = g[least_[n]], distance = std::sqrt(std::max(0.0, squared + lowest)),
+                   way = longest[n];
+      const double highest = lowest + 4 * way * (distance + way);
+      const double slack = 1e-9 * (squared + std::abs(lowest) + std::abs(highest));
+      for (std::size_t k = 0; k < siteCount(); ++k)
+        if (g[k] <= highest + slack) near_[n].push_back(static_cast<Index>(k));
+    }
+  });
+}
+
+std::span<const Index> SiteValues::nearestList(const Tetra& nodes) const {
+  const auto* best = &near_[static_cast<std::size_t>(nodes[0])];
+  for (const Index n : nodes)
+    if (near_[static_cast<std::size_t>(n)].size() < best->size()) best = &near_[static_cast<std::size_t>(n)];
+  return *best;
+}
+
+void SiteValues::candidates(const Tetra& nodes, std::vector<Index>& out) const {
   const std::array<const double*, 4> g{at(nodes[0]), at(nodes[1]), at(nodes[2]), at(nodes[3])};
-  scratch.assign(n, 0);
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Index w = least(nodes[i]);
-    const auto isRepeated = [&](std::size_t j) { return least(nodes[j]) == w; };
-    if ((i > 0 && isRepeated(0)) || (i > 1 && isRepeated(1)) || (i > 2 && isRepeated(2))) continue;
-    const std::size_t own = static_cast<std::size_t>(w);
-    mark(
-        g, own, 0, own, [](double x, double y) { return x < y; }, scratch.data());
-    mark(
-        g, own, own + 1, n, [](double x, double y) { return x <= y; }, scratch.data());
-  }
+  std::array<Index, 4> winners{};
+  std::size_t count = 0;
+  for (const Index n : nodes)
+    if (std::find(winners.begin(), winners.begin() + count, least(n)) == winners.begin() + count)
+      winners[count++] = least(n);
   out.clear();
-  for (std::size_t k = 0; k < n; ++k)
-    if (scratch[k] == 0) out.push_back(static_cast<Index>(k));
+  for (const Index k : nearestList(nodes)) {
+    bool undercut = false;
+    for (std::size_t w = 0; w < count && !undercut; ++w)
+      undercut = winners[w] != k && undercuts(g, winners[w], k);
+    if (!undercut) out.push_back(k);
+  }
 }
 
 }  // namespace sherd

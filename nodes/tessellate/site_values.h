@@ -25,7 +25,7 @@ namespace sherd {
 
 class SiteValues {
  public:
-  /// Cost O(d · nodes · sites), in parallel over nodes.
+  /// Cost O(d · nodes · sites) time and O(nodes · sites) memory, in parallel over nodes.
   SiteValues(const Partition& partition, const Exec& exec);
 
   std::size_t siteCount() const { return siteOf_.size(); }
@@ -38,10 +38,15 @@ class SiteValues {
 
   /// The ranks that may be least somewhere in the tetrahedron, ascending: all but those that one site, least
   /// at a node, undercuts at all four nodes. Cost O(sites).
-  void candidates(const Tetra& nodes, std::vector<Index>& out, std::vector<unsigned char>& scratch) const;
+  void candidates(const Tetra& nodes, std::vector<Index>& out) const;
 
  private:
+  void findNear(const Eigen::MatrixXd& nodes, std::span<const Tetra> tets, const Exec& exec);
+  std::span<const Index> nearestList(const Tetra& nodes) const;
+
   std::vector<Index> siteOf_, least_;
+  /// Per node: the ranks that can be least in a tetrahedron around it, ascending.
+  std::vector<std::vector<Index>> near_;
   Eigen::MatrixXd values_;  ///< sites by rank × nodes
 };
 

@@ -1,4 +1,5 @@
 #include "bench/scaled_bodies.h"
+#include "geometry/surface_links.h"
 
 #include <algorithm>
 #include <array>
@@ -112,6 +113,7 @@ std::shared_ptr<const TetMesh> blockAround(TriMesh surface, int n) {
   for (Vec3& p : cage.nodes) p += corner;
   cage.surface = std::make_shared<const TriMesh>(std::move(surface));
   hold(cage, cubes.size(), corner, edge, count);
+  linkSurface(cage, Exec{});  // as Tetrahedralize does, once for every body
   return std::make_shared<const TetMesh>(std::move(cage));
 }
 
