@@ -15,9 +15,9 @@ NodeType selectPieceNode() {
                {.min = 1, .max = 1e6, .help = "by size: 1 is the largest piece, 2 the next"})
       .output<TriMesh>("mesh", "its closed surface, crack faces in the material `inside`; for Tetrahedralize")
       .output<std::string>("name", "the piece's name")
-      .output<double>("density", "kg/m³, of the body; for Simulate's `density`")
-      .output<double>("young", "Pa, of the body; for Simulate's `young`")
-      .output<double>("poisson", "of the body; for Simulate's `poisson`")
+      .output<double>("density", "the body's, for Simulate's `density`, kg/m³")
+      .output<double>("young", "the body's, for Simulate's `young`, Pa")
+      .output<double>("poisson", "the body's, for Simulate's `poisson`")
       .run([](const SelectPieceParams& params, NodeIo& io) -> Result<void> {
         const auto pieces = io.in<Fragments>("pieces");
         SHERD_ASSIGN(SelectedPiece selected, selectPiece(*pieces, params, io.exec()));

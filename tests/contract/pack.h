@@ -82,14 +82,16 @@ inline ContractExceptions packExceptions() {
   ContractExceptions exceptions;
   exceptions.dimensionless = {
       // counts
-      "ContactSheet.columns", "CVD.degree", "CVD.max_iterations", "Embed.dimensions", "PredictDegree.degree",
-      "PredictDegree.max_degree", "Preview.samples", "Repair.resolution", "Tetrahedralize.tets",
+      "ContactSheet.columns", "ConvexProxies.max_hulls", "CVD.degree", "CVD.max_iterations",
+      "Embed.dimensions", "PredictDegree.degree", "PredictDegree.max_degree", "Preview.samples",
+      "Repair.resolution", "SelectPiece.number", "Tetrahedralize.tets",
       // seeds
       "CVD.seed", "PredictDegree.seed",
       // shares and ratios of equal quantities
-      "CVD.tolerance", "Embed.tolerance", "Embed.time", "Preview.explode", "Repair.crack", "Repair.leaf",
-      "Repair.small_hole", "Simulate.ball_target", "Simulate.friction", "Simulate.obstacle_poisson",
-      "Simulate.poisson", "Simulate.restitution", "Tessellate.min_volume",
+      "ConvexProxies.tolerance", "CVD.tolerance", "Embed.tolerance", "Embed.time", "Preview.explode",
+      "Repair.crack", "Repair.leaf", "Repair.small_hole", "Simulate.ball_target", "Simulate.friction",
+      "Simulate.obstacle_poisson", "SelectPiece.poisson", "Simulate.poisson", "Simulate.restitution",
+      "Tessellate.min_volume",
       // an exponent
       "Weights.alpha",
       // a direction

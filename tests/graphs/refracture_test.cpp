@@ -60,7 +60,7 @@ TEST(Refracture, HullsOfTheLastLevelAreDescribed) {
   const ScratchDirectory scratch;
   const std::string out = scratch.file("out");
   const ProgramRun run =
-      runProgram("run '" SHERD_SOURCE_DIR "/graphs/refracture.json' --target hulls --var out='" + out + "'");
+      runProgram("run '" SHERD_SOURCE_DIR "/graphs/refracture.json' --to hulls --var out='" + out + "'");
   ASSERT_EQ(run.exitCode, 0) << run.output;
   EXPECT_NE(run.output.find("more volume than the pieces"), std::string::npos) << run.output;
   const Json proxies = jsonOf(out + "/3/proxies.json");

@@ -217,7 +217,7 @@ TEST_F(ExportGlb, SecondRunTouchesNothingAndMendsWhatWasChanged) {
   const std::string whole = contentOf(out("pieces.glb"));
   EXPECT_FALSE(run(f)->written);
   std::ofstream(out("pieces.glb")) << "else";
-  std::ofstream(out("pieces.glb.partial")) << "half";
+  std::ofstream(out("pieces.glb.0123456789abcdef.partial")) << "half";
   EXPECT_TRUE(run(f)->written);
   EXPECT_EQ(contentOf(out("pieces.glb")), whole);
   EXPECT_EQ(filesBelow(params.directory).size(), 2u);
