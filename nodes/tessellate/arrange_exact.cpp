@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "geometry/copy_points.h"
 #include "tessellate/arrangement.h"
 #include "tessellate/crossing_order.h"
 #include "tessellate/triangle_in_tet.h"
@@ -17,7 +18,7 @@ struct FoundEnd {
   Index through;  ///< the polygon; or the surface triangle
   Index segment;  ///< 2 · segment + (0: from, 1: to)
   bool fromFront;
-  Vec3 position;
+  SegmentEnd end;  ///< of that segment
 
   bool names(const FoundEnd& o) const { return a == o.a && b == o.b && through == o.through; }
   friend bool operator<(const FoundEnd& x, const FoundEnd& y) {
@@ -130,10 +131,9 @@ class Arranger {
     if (!triangle.meets(back, front, linesOf(p), ends[0], ends[1])) return;
     for (const bool isTo : {false, true}) {
       const SegmentEnd& end = ends[isTo];
-      const std::array<double, 3> w = triangle.weights(end);
       FoundEnd found;
+      found.end = end;
       found.segment = 2 * static_cast<Index>(out.segments.size()) + isTo;
-      found.position = placed(triangles_[at(s)], w);
       if (end.side >= 0) {
         const auto c = static_cast<std::size_t>(end.side), d = (c + 1) % 3;
         const Index from = triangles_[at(s)][c], to = triangles_[at(s)][d];
@@ -181,15 +181,29 @@ class Arranger {
     a_.surface = triangles_;
     a_.firstCrack = static_cast<Index>(positions_.size());
     a_.firstNew = a_.firstCrack + static_cast<Index>(sheets_.vertices.size());
-    a_.positions.reserve(at(a_.firstNew) + (surfaceEnds.size() + sheetEnds.size()) / 2 + 1);
-    a_.positions.assign(positions_.begin(), positions_.end());
-    a_.positions.insert(a_.positions.end(), sheets_.vertices.begin(), sheets_.vertices.end());
     takeEnds(surfaceEnds, a_.surfaceCrossings);
     takeEnds(sheetEnds, a_.sheetCrossings);
+    placeVertices();
     indexByEdge(a_.surfaceCrossings, a_.cutEdges.size());
     indexByEdge(a_.sheetCrossings, sheets_.edges.size());
     std::sort(segments.begin(), segments.end(), [](const Segment& x, const Segment& y) {
       return std::tie(x.surface, x.polygon) < std::tie(y.surface, y.polygon);
+    });
+  }
+
+  /// Each crossing by the first of the segments that end there.
+  void placeVertices() {
+    a_.positions.resize(at(a_.firstNew) + places_.size());
+    copyPoints(positions_, a_.positions.data());
+    copyPoints(sheets_.vertices, a_.positions.data() + a_.firstCrack);
+    parallelFor(exec_, places_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto& [surface, polygon, segmentEnd] = places_[i];
+        const TetFrame frame(tets_, values_, sheets_.polygons[at(polygon)].tet);
+        TriangleInTet triangle(frame, triangles_[at(surface)], positions_);
+        triangle.take(exact_.ranks[at(polygon)][0], exact_.ranks[at(polygon)][1], linesOf(polygon));
+        a_.positions[at(a_.firstNew) + i] = placed(triangles_[at(surface)], triangle.weights(segmentEnd));
+      }
     });
   }
 
@@ -201,8 +215,10 @@ class Arranger {
         if (end.b >= 0 && (i == 0 || ends[i - 1].a != end.a || ends[i - 1].b != end.b))
           a_.cutEdges.push_back({end.a, end.b});
         const Index edge = end.b >= 0 ? static_cast<Index>(a_.cutEdges.size()) - 1 : end.a;
-        out.list.push_back({edge, end.through, end.fromFront, static_cast<Index>(a_.positions.size())});
-        a_.positions.push_back(end.position);
+        out.list.push_back(
+            {edge, end.through, end.fromFront, a_.firstNew + static_cast<Index>(places_.size())});
+        const Segment& first = a_.segments[at(end.segment / 2)];
+        places_.push_back({first.surface, first.polygon, end.end});
       }
       Segment& segment = a_.segments[at(end.segment / 2)];
       (end.segment % 2 == 0 ? segment.from : segment.to) = out.list.back().vertex;
@@ -338,7 +354,13 @@ class Arranger {
   std::vector<Index> cutTet_;        ///< per tetrahedron its number among the cut ones, or −1
   std::vector<Index> cornerOfEdge_;  ///< per sheet edge a polygon's corner where it begins
   std::size_t cutTets_ = 0;
+  struct Place {
+    Index surface, polygon;
+    SegmentEnd end;
+  };
+
   std::vector<FoundSegments> found_;
+  std::vector<Place> places_;  ///< per crossing
   Arrangement a_;
 };
 

@@ -129,12 +129,50 @@ class TetEnvelope {
     return true;
   }
 
+  /// det and what it would be with all its products positive, of the differences' rounded values.
+  struct Rough {
+    double value = 0, size = 0;
+  };
+  using Entries = std::array<std::array<double, 4>, 4>;
+
+  static Rough expand2(const Entries& m, std::size_t row, std::size_t a, std::size_t b) {
+    const double x = m[row][a] * m[row + 1][b], y = m[row][b] * m[row + 1][a];
+    return {x - y, std::abs(x) + std::abs(y)};
+  }
+  static Rough expand3(const Entries& m, std::size_t row, const std::array<std::size_t, 3>& c) {
+    const Rough x = expand2(m, row + 1, c[1], c[2]), y = expand2(m, row + 1, c[0], c[2]),
+                z = expand2(m, row + 1, c[0], c[1]);
+    const double p = m[row][c[0]], q = m[row][c[1]], r = m[row][c[2]];
+    return {p * x.value - q * y.value + r * z.value,
+            std::abs(p) * x.size + std::abs(q) * y.size + std::abs(r) * z.size};
+  }
+  static Rough roughDeterminant(const Entries& m, std::size_t n) {
+    if (n == 1) return {m[0][0], std::abs(m[0][0])};
+    if (n == 2) return expand2(m, 0, 0, 1);
+    if (n == 3) return expand3(m, 0, {0, 1, 2});
+    Rough sum;
+    constexpr std::array<std::array<std::size_t, 3>, 4> rest{{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
+    for (std::size_t c = 0; c < 4; ++c) {
+      const Rough d = expand3(m, 1, rest[c]);
+      sum.value += (c % 2 == 0 ? m[0][c] : -m[0][c]) * d.value;
+      sum.size += std::abs(m[0][c]) * d.size;
+    }
+    return sum;
+  }
+
   int determinantSign(std::span<const int> nodes, std::span<const std::array<Index, 2>> pairs) const {
-    std::array<std::array<Approx, 4>, 4> m;
-    for (std::size_t r = 0; r < nodes.size(); ++r)
-      for (std::size_t c = 0; c < pairs.size(); ++c)
-        m[r][c] = difference(g_[static_cast<std::size_t>(nodes[r])], pairs[c][0], pairs[c][1]);
-    if (const int s = determinant(m, nodes.size()).sign(); s != 0) return s;
+    Entries m;
+    for (std::size_t r = 0; r < nodes.size(); ++r) {
+      const double* g = g_[static_cast<std::size_t>(nodes[r])];
+      for (std::size_t c = 0; c < pairs.size(); ++c) m[r][c] = g[pairs[c][0]] - g[pairs[c][1]];
+    }
+    // Each product has at most four factors off by a unit each, three roundings, and five more in the sums.
+    const Rough rough = roughDeterminant(m, nodes.size());
+    if (std::abs(rough.value) > 16 * 0x1p-53 * rough.size + 0x1p-1000) return rough.value > 0 ? 1 : -1;
+    return exactSign(nodes, pairs);
+  }
+
+  int exactSign(std::span<const int> nodes, std::span<const std::array<Index, 2>> pairs) const {
     std::array<AffineFunction, 4> functions;
     for (std::size_t c = 0; c < pairs.size(); ++c) {
       functions[c].plus = pairs[c][0];

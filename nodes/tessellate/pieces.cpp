@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "base/parallel.h"
+#include "geometry/copy_points.h"
 #include "geometry/solid.h"
 #include "tessellate/coincident.h"
 #include "tessellate/solids.h"
@@ -37,13 +39,18 @@ class SolidMerger {
       return std::pair(solids_.list[at(a)].volume, a) < std::pair(solids_.list[at(b)].volume, b);
     });
     std::size_t merged = 0;
-    for (const Index s : small)
-      if (!isLargeEnough(s, minVolume)) merged += joinLargestNeighbour(s);
+    for (const Index s : small) {
+      if (isLargeEnough(s, minVolume)) continue;
+      const bool joins = joinLargestNeighbour(s);
+      merged += joins;
+      if (!joins && isFlatSkin(s)) joined_[at(s)] = kNone;
+    }
     return merged;
   }
 
+  /// −1 for one that is nothing.
   Index ownerOf(Index solid) const {
-    while (joined_[at(solid)] != solid) solid = joined_[at(solid)];
+    while (solid != kNone && joined_[at(solid)] != solid) solid = joined_[at(solid)];
     return solid;
   }
 
@@ -82,10 +89,24 @@ class SolidMerger {
     return true;
   }
 
+  static constexpr Index kNone = -1;
+
+  /// A pocket that rounding laid flat into the skin: cut faces that cover each other, and nothing between
+  /// them.
+  bool isFlatSkin(Index solid) const {
+    double area = 0;
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      if (solids_.ofFace[f] != solid) continue;
+      if (f < faces_.firstSkin() || faces_.isSheet(f)) return false;
+      area += triangleArea(positions_, faces_.corners(f));
+    }
+    return std::abs(solids_.list[at(solid)].volume) <= 1e-9 * area * std::sqrt(area);
+  }
+
   const CellFaces& faces_;
   std::span<const Vec3> positions_;
   Solids& solids_;
-  std::vector<Index> joined_;                      ///< per solid: the one that it joined, or itself
+  std::vector<Index> joined_;                      ///< per solid: the one that it joined, itself, or none
   std::vector<std::map<Index, double>> contacts_;  ///< m², per solid that still stands
 };
 
@@ -139,16 +160,21 @@ class Assembler {
       out_.pieces[i].cell = solids.list[at(order[i])].cell;
     }
     pieceOf_.resize(solids.list.size());
-    for (std::size_t s = 0; s < pieceOf_.size(); ++s)
-      pieceOf_[s] = number[at(merger.ownerOf(static_cast<Index>(s)))];
+    for (std::size_t s = 0; s < pieceOf_.size(); ++s) {
+      const Index owner = merger.ownerOf(static_cast<Index>(s));
+      pieceOf_[s] = owner < 0 ? -1 : number[at(owner)];
+    }
   }
 
-  Index pieceOfFace(const Solids& solids, std::size_t f) const { return pieceOf_[at(solids.ofFace[f])]; }
+  /// −1 for faces that don't exist.
+  Index pieceOfFace(const Solids& solids, std::size_t f) const {
+    return solids.ofFace[f] < 0 ? -1 : pieceOf_[at(solids.ofFace[f])];
+  }
 
   void reserve(const CellFaces& faces, const Solids& solids) {
     std::vector<std::array<std::size_t, 2>> counts(out_.pieces.size(), {0, 0});
     for (std::size_t f = 0; f < faces.size(); ++f)
-      if (faces.exists(f)) ++counts[at(pieceOfFace(solids, f))][faces.isSheet(f)];
+      if (const Index p = pieceOfFace(solids, f); p >= 0) ++counts[at(p)][faces.isSheet(f)];
     for (std::size_t p = 0; p < counts.size(); ++p) {
       Piece& piece = out_.pieces[p];
       piece.surface.reserve(counts[p][0]);
@@ -163,8 +189,9 @@ class Assembler {
   void fillPieces(const CellFaces& faces, const Solids& solids) {
     reserve(faces, solids);
     for (std::size_t f = 0; f < faces.firstSheet(); ++f) {
-      if (!faces.exists(f)) continue;
-      Piece& piece = out_.pieces[at(pieceOfFace(solids, f))];
+      const Index p = pieceOfFace(solids, f);
+      if (p < 0) continue;
+      Piece& piece = out_.pieces[at(p)];
       piece.surface.push_back(faces.corners(f));
       piece.surfaceSource.push_back(faces.source(f));
       piece.surfaceCut.push_back(f < faces.firstSkin() ? -1 : static_cast<Index>(f - faces.firstSkin()));
@@ -225,13 +252,13 @@ class Assembler {
         if (p.surfaceCut[t] >= 0) use(p.surface[t]);
       for (const Triangle& t : p.crack) use(t);
     }
-    out_.positions.reserve(all);
-    out_.positions.assign(a_.positions.begin(), a_.positions.begin() + a_.firstCrack);
-    for (std::size_t v = first; v < all; ++v) {
-      if (number[v - first] < 0) continue;
-      number[v - first] = static_cast<Index>(out_.positions.size());
-      out_.positions.push_back(a_.positions[v]);
-    }
+    std::size_t count = first;
+    for (Index& n : number)
+      if (n == 0) n = static_cast<Index>(count++);
+    out_.positions.resize(count);
+    copyPoints(std::span(a_.positions).first(first), out_.positions.data());
+    for (std::size_t v = first; v < all; ++v)
+      if (number[v - first] >= 0) out_.positions[at(number[v - first])] = a_.positions[v];
     const auto renumber = [&](Triangle& t) {
       for (Index& v : t)
         if (v >= a_.firstCrack) v = number[at(v) - first];

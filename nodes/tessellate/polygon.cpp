@@ -11,6 +11,8 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Loop = std::vector<Index>;
 
+constexpr double kGoodAngle = 0.25;  ///< sine of a least angle that needs no flips
+
 class Plane {
  public:
   explicit Plane(std::span<const PlanarCorner> corners) : corners_(corners) {}
@@ -202,6 +204,10 @@ bool flipPass(const Plane& plane, std::vector<Triangle>& triangles,
 
 void flipToBetterAngles(const Plane& plane, std::span<const Loop> loops, std::vector<Triangle>& triangles) {
   if (triangles.size() < 2) return;
+  const bool goodAlready = std::all_of(triangles.begin(), triangles.end(), [&](const Triangle& t) {
+    return plane.quality(t[0], t[1], t[2]) > kGoodAngle;
+  });
+  if (goodAlready) return;
   std::vector<std::pair<Index, Index>> fixed;
   for (const Loop& loop : loops)
     for (std::size_t i = 0; i < loop.size(); ++i)

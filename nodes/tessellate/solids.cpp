@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "base/parallel.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/solid.h"
 #include "geometry/surface_tree.h"
@@ -74,8 +75,6 @@ class SolidFinder {
   /// Numbers the shells in the order of their first faces and sums up their volumes about one point.
   void collectShells() {
     out_.ofFace.assign(faces_.size(), -1);
-    Vec3 origin = Vec3::Zero();
-    if (!positions_.empty()) origin = positions_[0];
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       if (!faces_.exists(f)) continue;
       Index& shell = out_.ofFace[sets_.find(f)];  // a root is the least of its set, so it comes first
@@ -84,11 +83,28 @@ class SolidFinder {
         out_.list.push_back({faces_.cell(f), 0});
       }
       out_.ofFace[f] = shell;
-      const Triangle t = faces_.corners(f);
-      const Vec3 a = positions_[at(t[0])] - origin, b = positions_[at(t[1])] - origin,
-                 c = positions_[at(t[2])] - origin;
-      out_.list[at(shell)].volume += a.cross(b).dot(c) / 6;
     }
+    sumVolumes();
+  }
+
+  void sumVolumes() {
+    Vec3 origin = Vec3::Zero();
+    if (!positions_.empty()) origin = positions_[0];
+    constexpr std::size_t block = 1 << 15;
+    std::vector<std::vector<double>> parts((faces_.size() + block - 1) / block);
+    parallelFor(exec_, faces_.size(), block, [&](std::size_t begin, std::size_t end) {
+      std::vector<double>& volumes = parts[begin / block];
+      volumes.assign(out_.list.size(), 0);
+      for (std::size_t f = begin; f < end; ++f) {
+        if (out_.ofFace[f] < 0) continue;
+        const Triangle t = faces_.corners(f);
+        const Vec3 a = positions_[at(t[0])] - origin, b = positions_[at(t[1])] - origin,
+                   c = positions_[at(t[2])] - origin;
+        volumes[at(out_.ofFace[f])] += a.cross(b).dot(c) / 6;
+      }
+    });
+    for (const std::vector<double>& part : parts)
+      for (std::size_t s = 0; s < part.size(); ++s) out_.list[s].volume += part[s];
   }
 
   std::vector<Triangle> trianglesOf(Index shell) const {

@@ -33,7 +33,8 @@ NodeType tessellateNode() {
       .input<Partition>("cells", "the cells to cut along, from CVD")
       .optionalInput<TriMesh>("mesh", "the surface to cut; must be the one that the tetrahedra were made for")
       .choice(
-          "method", &TessellateParams::cells, {{"exact", CellMode::Exact}, {"canonical", CellMode::Canonical}},
+          "method", &TessellateParams::cells,
+          {{"exact", CellMode::Exact}, {"canonical", CellMode::Canonical}},
           "exact: where each site is nearest; canonical: the paper's four schemes on the labels at the nodes")
       .choice(
           "surface", &TessellateParams::surface,

@@ -31,11 +31,15 @@ Wide wideCoordinate(const TetFrame& frame, std::size_t i, const Vec3& point) {
   return sum;
 }
 
-Wide wideDifference(const TetFrame& frame, const Vec3& point, Index plus, Index minus) {
+std::array<Wide, 4> wideCoordinates(const TetFrame& frame, const Vec3& point) {
+  return {wideCoordinate(frame, 0, point), wideCoordinate(frame, 1, point), wideCoordinate(frame, 2, point),
+          wideCoordinate(frame, 3, point)};
+}
+
+Wide wideDifference(const TetFrame& frame, const std::array<Wide, 4>& coordinates, Index plus, Index minus) {
   Wide sum = 0;
   for (std::size_t i = 0; i < 4; ++i)
-    sum += wideCoordinate(frame, i, point) *
-           (static_cast<Wide>(frame.g[i][plus]) - static_cast<Wide>(frame.g[i][minus]));
+    sum += coordinates[i] * (static_cast<Wide>(frame.g[i][plus]) - static_cast<Wide>(frame.g[i][minus]));
   return sum;
 }
 
@@ -169,12 +173,16 @@ int TriangleInTet::signAtEnd(const SegmentEnd& end, int function) const {
   return sign * determinantSign(std::array<std::size_t, 3>{0, 1, 2}, std::array{kSheet, own, function});
 }
 
+void TriangleInTet::take(Index back, Index front, std::span<const SheetEdgeLine> lines) {
+  back_ = back, front_ = front, lines_ = lines;
+  for (std::size_t c = 0; c < 3; ++c) sheet_[c] = frame_.difference(coordinates_[c], front, back);
+}
+
 bool TriangleInTet::meets(Index back, Index front, std::span<const SheetEdgeLine> lines, SegmentEnd& from,
                           SegmentEnd& to) {
-  back_ = back, front_ = front, lines_ = lines;
+  take(back, front, lines);
   int sum = 0;
   for (std::size_t c = 0; c < 3; ++c) {
-    sheet_[c] = frame_.difference(coordinates_[c], front, back);
     signs_[c] = sheet_[c].sign();
     if (signs_[c] == 0) signs_[c] = frame_.sign(vertices_[c], coordinates_[c], front, back);
     sum += signs_[c];
@@ -220,9 +228,10 @@ std::array<double, 3> TriangleInTet::weights(const SegmentEnd& end) const {
   if (error <= kDoubleWillDo * std::abs(sum.value)) {
     for (std::size_t i = 0; i < n; ++i) result[corners[i]] = rough[i].value / sum.value;
   } else if (error <= kExtendedWillDo * std::abs(sum.value)) {
-    const auto fine =
-        minors([&](std::size_t c) { return wideDifference(frame_, vertices_[c], front_, back_); },
-               [&](std::size_t c) { return wideValue(own, c); });
+    std::array<std::array<Wide, 4>, 3> wide{};
+    for (std::size_t i = 0; i < n; ++i) wide[corners[i]] = wideCoordinates(frame_, vertices_[corners[i]]);
+    const auto fine = minors([&](std::size_t c) { return wideDifference(frame_, wide[c], front_, back_); },
+                             [&](std::size_t c) { return wideValue(own, wide[c]); });
     const Wide whole = fine[0] + fine[1] + fine[2];
     for (std::size_t i = 0; i < n; ++i) result[corners[i]] = static_cast<double>(fine[i] / whole);
   } else {
@@ -237,10 +246,10 @@ std::array<double, 3> TriangleInTet::weights(const SegmentEnd& end) const {
   return result;
 }
 
-long double TriangleInTet::wideValue(int function, std::size_t corner) const {
+long double TriangleInTet::wideValue(int function, const std::array<long double, 4>& coordinates) const {
   const SheetEdgeLine& line = lines_[static_cast<std::size_t>(function)];
-  if (line.face >= 0) return wideCoordinate(frame_, static_cast<std::size_t>(line.face), vertices_[corner]);
-  return wideDifference(frame_, vertices_[corner], line.third, back_);
+  if (line.face >= 0) return coordinates[static_cast<std::size_t>(line.face)];
+  return wideDifference(frame_, coordinates, line.third, back_);
 }
 
 }  // namespace sherd

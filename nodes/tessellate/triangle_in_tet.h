@@ -56,6 +56,9 @@ class TriangleInTet {
   /// lines, directed so that the back cell is on its left; false where they miss each other.
   bool meets(Index back, Index front, std::span<const SheetEdgeLine> lines, SegmentEnd& from, SegmentEnd& to);
 
+  /// As meets() does first: takes this polygon for what follows.
+  void take(Index back, Index front, std::span<const SheetEdgeLine> lines);
+
   /// Sign of g_plus − g_minus at a corner, with ties.
   int signOfDifference(std::size_t corner, Index plus, Index minus) const {
     return frame_.sign(vertices_[corner], coordinates_[corner], plus, minus);
@@ -69,7 +72,7 @@ class TriangleInTet {
   static constexpr int kSheet = -1;  ///< the function g_front − g_back; from 0 on an edge line's
 
   Approx value(int function, std::size_t corner) const;
-  long double wideValue(int function, std::size_t corner) const;
+  long double wideValue(int function, const std::array<long double, 4>& coordinates) const;
   AffineFunction affine(int function) const;
   int determinantSign(std::span<const std::size_t> corners, std::span<const int> functions) const;
   int signAtEnd(const SegmentEnd& end, int function) const;
