@@ -13,7 +13,7 @@
 //   error = (Σ hulls − piece) / piece ≥ 0
 //
 // Hulls of neighbouring pieces overlap where the crack between them is not flat: an engine pushes them apart.
-// The overlap is computed too (hull with hull, clipped exactly as above); a decomposition makes it smaller.
+// The overlap is computed too (overlaps.h); a decomposition makes it smaller.
 #pragma once
 
 #include "base/exec.h"

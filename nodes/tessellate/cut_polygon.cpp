@@ -6,6 +6,7 @@ void CutPolygon::begin(std::span<const Index> corners) {
   ids_.clear();
   planar_.clear();
   halfEdges_.clear();
+  regions_.clear();
   const Vec3& origin = positions_[at(corners[0])];
   Vec3 normal = Vec3::Zero();
   for (std::size_t i = 1; i + 1 < corners.size(); ++i)

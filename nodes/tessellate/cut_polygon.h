@@ -22,7 +22,7 @@ class CutPolygon {
   void addBorderVertex(Index vertex, std::size_t side) { addVertex(vertex, lineOf(side)); }
   void addInnerVertex(Index vertex) { addVertex(vertex, 0); }
   /// A directed edge with the region `region` on its left.
-  void addHalfEdge(Index from, Index to, Index region) { halfEdges_.push_back({from, to, region}); }
+  void addHalfEdge(Index from, Index to, Index region) { halfEdges_.push_back({from, to, numberOf(region)}); }
 
   /// Calls emit(triangle, region) for every triangle; returns how many had to be forced.
   template <class Emit>
@@ -36,7 +36,7 @@ class CutPolygon {
       while (last < halfEdges_.size() && halfEdges_[last].region == halfEdges_[first].region) ++last;
       loops_.clear();
       traceLoops(std::span(halfEdges_).subspan(first, last - first));
-      const Index region = halfEdges_[first].region;
+      const Index region = regions_[at(halfEdges_[first].region)];
       first = last;
       if (loops_.empty()) continue;
       const PolygonTriangulation result = triangulatePolygon(planar_, loops_);
@@ -49,8 +49,15 @@ class CutPolygon {
 
  private:
   struct HalfEdge {
-    Index from, to, region;
+    Index from, to, region;  ///< by its number in regions_
   };
+
+  /// Regions are numbered as they come, so that their names play no part in the order of the triangles.
+  Index numberOf(Index region) {
+    const auto place = std::find(regions_.begin(), regions_.end(), region) - regions_.begin();
+    if (static_cast<std::size_t>(place) == regions_.size()) regions_.push_back(region);
+    return static_cast<Index>(place);
+  }
 
   /// The bit of a side; those of polygons with many sides go without.
   static std::uint32_t lineOf(std::size_t side) { return side < 32 ? 1u << side : 0; }
@@ -65,6 +72,7 @@ class CutPolygon {
   std::vector<Index> ids_;
   std::vector<PlanarCorner> planar_;
   std::vector<HalfEdge> halfEdges_;
+  std::vector<Index> regions_;
   std::vector<std::vector<Index>> loops_;
 };
 

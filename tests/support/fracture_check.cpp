@@ -295,6 +295,7 @@ bool intersectsItself(const std::vector<Vec3>& positions, const std::vector<Tria
 FractureCheck checkFracture(const Fragments& f, const FractureCheckParams& params) {
   FractureCheck check;
   check.pieces = f.pieces.size();
+  check.areaLimit = params.areaLimit;
   const TriMesh& source = *f.tets->surface;
   const Vec3 origin = source.positions.front();
   const double size = boxOf(source.positions).diagonal();
@@ -338,7 +339,8 @@ bool FractureCheck::good() const {
          openEdges + degenerate + severalParts + notPositive + lonelyCracks + changedSources + pointsInNone +
                  pointsInMany + pointsOutside ==
              0 &&
-         volumeError < std::max(1e-9, rounding) && areaError < 1e-9 && offSource < 1e-9 && weightError < 1e-7;
+         volumeError < std::max(1e-9, rounding) && areaError < areaLimit && offSource < 1e-9 &&
+         weightError < 1e-7;
 }
 
 std::string FractureCheck::text() const {
@@ -360,7 +362,7 @@ std::string FractureCheck::text() const {
     if (!(value < limit)) text += fmt::format("{}{} {:.2e}", text.empty() ? "" : ", ", what, value);
   };
   exceeds("volume error", volumeError, std::max(1e-9, rounding));
-  exceeds("area error", areaError);
+  exceeds("area error", areaError, areaLimit);
   exceeds("distance from the source", offSource);
   exceeds("error of weights at cuts", weightError, 1e-7);
   return text;

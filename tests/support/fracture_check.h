@@ -13,6 +13,7 @@ namespace sherd::test {
 struct FractureCheckParams {
   std::size_t points = 0;  ///< sampled, to lie in exactly one piece inside the body and in none outside
   bool selfIntersections = false;  ///< count the pieces that intersect themselves
+  double areaLimit = 1e-9;         ///< of areaError
 };
 
 struct FractureCheck {
@@ -28,7 +29,8 @@ struct FractureCheck {
       0;  ///< largest distance of a cut corner from where its weights put it, over the diagonal
   double volumeError = 0;  ///< |Σ pieces − source| / source
   double areaError = 0;    ///< the same for the outer skin
-  double offSource = 0;    ///< largest distance of a skin corner from the source, over the body's diagonal
+  double areaLimit = 1e-9;
+  double offSource = 0;  ///< largest distance of a skin corner from the source, over the body's diagonal
   std::size_t points = 0, pointsInNone = 0, pointsInMany = 0, pointsOutside = 0;
   double rounding = 0;   ///< of the volume, where new vertices stand in the coordinates' own precision
   std::size_t flat = 0;  ///< triangles with three corners on a line; with selfIntersections
