@@ -120,6 +120,7 @@ class Decomposer {
     for (const Candidate& c : ranking) {
       if (exec_.cancelled() || !std::isfinite(c.hulls)) break;
       SHERD_ASSIGN(Part below, makePart(part.solid.clipped(c.plane)));
+      if (exec_.cancelled()) break;
       SHERD_ASSIGN(Part above, makePart(part.solid.clipped(c.plane.turned())));
       const double least = kLeastPart * volume_;
       if (below.volume < least || above.volume < least) continue;

@@ -114,6 +114,8 @@ std::string broken(const AdversarialCase& made, const TessellateParams& params, 
   std::string what = check.good() ? "" : check.text();
   const auto two = tessellate(made.cells, params, Exec{});
   if (!two.ok() || digestOf(*one) != digestOf(*two)) what += " two threads give other bytes";
+  // The paper's cells follow the nodes' labels, which go by the sites' numbers where two are equally near.
+  if (params.cells == CellMode::Canonical) return what;
   bool sameBits = true;
   const std::string renaming = afterRenaming(made, params, *one, sameBits);
   totals.renamedDiffer += !sameBits;
