@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 
 #include "base/parallel.h"
 #include "geometry/edge_table.h"

@@ -10,9 +10,9 @@ constexpr Index kOutsideCell = -1;
 /// Takes equal vertices together: triangles that lose a corner vanish, on both sides of a sheet alike, and
 /// what is left closes as before. Where a layer of a cell has become so thin that the triangles on its two
 /// sides have the same three corners, the layer goes: what lies on one side of it then touches what lies on
-/// the other (or the outside, if the layer was the skin). Afterwards no two triangles have the same corners.
-/// `surface`: uncut triangles that are covered by a layer are added to the skin and marked in `isCut`. Cost
-/// O(triangles with a corner that took in others).
+/// the other (or the outside, if the layer was the skin). `isCut`: per surface triangle; those that a layer
+/// covered are marked, and what takes their place is in the skin. A stack that amounts to more than one layer
+/// stays as it is. Cost O(surface) where vertices were taken together, nothing else.
 void removeThinLayers(const Arrangement& arrangement, ClippedMeshes& meshes,
                       std::vector<unsigned char>& isCut);
 
