@@ -11,7 +11,7 @@ class Arranger {
  public:
   Arranger(const TetMesh& tets, std::span<const Index> nodeOf, std::span<const Index> nodeCell,
            const Sheets& sheets)
-      : tets_(tets), sheets_(sheets), vertexOf_(tets.nodes.size(), -1) {
+      : sheets_(sheets), vertexOf_(tets.nodes.size(), -1) {
     const TriMesh& surface = *tets.surface;
     a_.surface = surface.triangles;
     a_.firstCrack = static_cast<Index>(surface.positions.size());
@@ -149,7 +149,6 @@ class Arranger {
     return {};
   }
 
-  const TetMesh& tets_;
   const Sheets& sheets_;
   std::vector<Index> vertexOf_;  ///< per node, −1 for inner ones
   std::vector<Face> faces_;      ///< the surface's triangles by their corners

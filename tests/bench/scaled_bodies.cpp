@@ -1,5 +1,4 @@
 #include "bench/scaled_bodies.h"
-#include "geometry/surface_links.h"
 
 #include <algorithm>
 #include <array>
@@ -8,6 +7,7 @@
 #include <numbers>
 
 #include "base/rng.h"
+#include "geometry/surface_links.h"
 #include "support/tet_families.h"
 
 namespace sherd::bench {
