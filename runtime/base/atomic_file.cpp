@@ -137,12 +137,13 @@ Result<FileChange> writeFileAtomically(const std::string& path, std::string_view
 }
 
 Result<void> makeDirectory(const std::string& directory) {
-  std::error_code code;
-  if (std::filesystem::is_directory(directory, code)) return {};
-  if (std::filesystem::exists(directory, code))
+  // Made first and looked at afterwards: another process may be making it at this very moment.
+  std::error_code code, ignored;
+  std::filesystem::create_directories(directory, code);
+  if (std::filesystem::is_directory(directory, ignored)) return {};
+  if (std::filesystem::exists(directory, ignored))
     return failure("'" + directory + "' is a file, not a directory",
                    "remove it, or choose another directory");
-  std::filesystem::create_directories(directory, code);
   if (code)
     return failure("cannot create the directory '" + directory + "': " + code.message(),
                    "choose a directory that can be created and written to");
