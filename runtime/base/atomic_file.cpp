@@ -144,10 +144,8 @@ Result<void> makeDirectory(const std::string& directory) {
   if (std::filesystem::exists(directory, ignored))
     return failure("'" + directory + "' is a file, not a directory",
                    "remove it, or choose another directory");
-  if (code)
-    return failure("cannot create the directory '" + directory + "': " + code.message(),
-                   "choose a directory that can be created and written to");
-  return {};
+  return failure("cannot create the directory '" + directory + "': " + code.message(),
+                 "choose a directory that can be created and written to");
 }
 
 }  // namespace sherd
