@@ -3,21 +3,11 @@
 namespace sherd {
 namespace {
 
-/// Running sums of a solid made of tetrahedra from `origin` to each triangle.
-struct Sums {
-  double volume = 0;
-  Vec3 first = Vec3::Zero();
-  Mat3 second = Mat3::Zero();
-
-  void add(const Vec3& a, const Vec3& b, const Vec3& c) {
-    const double v = a.cross(b).dot(c) / 6;
-    const Vec3 s = a + b + c;
-    volume += v;
-    first += v / 4 * s;
-    // ∫ x xᵀ over the tetrahedron (0, a, b, c) = v/20 (a aᵀ + b bᵀ + c cᵀ + s sᵀ).
-    second += v / 20 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose());
-  }
-};
+Mat3 matrixOf(const std::array<double, 6>& m) {
+  Mat3 result;
+  result << m[0], m[3], m[5], m[3], m[1], m[4], m[5], m[4], m[2];
+  return result;
+}
 
 }  // namespace
 
@@ -28,7 +18,7 @@ SolidIntegrals integrateSolid(std::span<const Vec3> positions,
   for (const auto& list : lists)
     if (origin == nullptr && !list.empty()) origin = &positions[at(list.front()[0])];
   if (origin == nullptr) return result;
-  Sums sums;
+  SolidSums sums;
   Vec3 mean = Vec3::Zero();
   std::size_t corners = 0;
   for (const auto& list : lists)
@@ -39,11 +29,18 @@ SolidIntegrals integrateSolid(std::span<const Vec3> positions,
       mean += a + b + c;
       corners += 3;
     }
+  result = integralsOf(sums, *origin);
+  if (sums.volume == 0) result.centroid = *origin + Vec3(mean / static_cast<double>(corners));
+  return result;
+}
+
+SolidIntegrals integralsOf(const SolidSums& sums, const Vec3& origin) {
+  SolidIntegrals result;
+  const Vec3 first(sums.first[0], sums.first[1], sums.first[2]);
+  const Vec3 local = sums.volume != 0 ? Vec3(first / sums.volume) : Vec3::Zero();
   result.volume = sums.volume;
-  const Vec3 local =
-      sums.volume != 0 ? Vec3(sums.first / sums.volume) : Vec3(mean / static_cast<double>(corners));
-  result.centroid = *origin + local;
-  result.secondMoment = sums.second - sums.volume * local * local.transpose();
+  result.centroid = origin + local;
+  result.secondMoment = matrixOf(sums.second) - sums.volume * local * local.transpose();
   return result;
 }
 
@@ -53,7 +50,14 @@ SolidIntegrals integrateSolid(std::span<const Vec3> positions, std::span<const T
 }
 
 double solidVolume(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
-  return integrateSolid(positions, triangles).volume;
+  if (triangles.empty()) return 0;
+  const Vec3& origin = positions[at(triangles.front()[0])];
+  double volume = 0;
+  for (const Triangle& t : triangles)
+    volume +=
+        (positions[at(t[0])] - origin).cross(positions[at(t[1])] - origin).dot(positions[at(t[2])] - origin) /
+        6;
+  return volume;
 }
 
 }  // namespace sherd

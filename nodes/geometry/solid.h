@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "types/solid_sums.h"
 #include "types/vec.h"
 
 namespace sherd {
@@ -26,6 +27,9 @@ SolidIntegrals integrateSolid(std::span<const Vec3> positions, std::span<const T
 /// The same over several triangle lists that together close (a piece's skin and its crack).
 SolidIntegrals integrateSolid(std::span<const Vec3> positions,
                               std::span<const std::span<const Triangle>> lists);
+
+/// From sums about `origin`; the centroid is the origin where the volume is 0.
+SolidIntegrals integralsOf(const SolidSums& sums, const Vec3& origin);
 
 /// Signed volume alone, m³.
 double solidVolume(std::span<const Vec3> positions, std::span<const Triangle> triangles);

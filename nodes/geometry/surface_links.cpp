@@ -77,11 +77,102 @@ void linkTriangles(TetMesh& mesh) {
     }
 }
 
+/// Grows patches over the links between triangles.
+class PatchGrower {
+ public:
+  explicit PatchGrower(TetMesh& mesh)
+      : neighbours_(mesh.surfaceNeighbours), out_(mesh.patches), patchOf_(out_.patchOf) {}
+
+  void run() {
+    out_ = {};
+    patchOf_.assign(neighbours_.size(), -1);
+    out_.begin.push_back(0);
+    for (std::size_t t = 0; t < neighbours_.size(); ++t) {
+      seeds_.push_back(static_cast<Index>(t));
+      for (; nextSeed_ < seeds_.size(); ++nextSeed_)
+        if (patchOf_[at(seeds_[nextSeed_])] < 0) grow(seeds_[nextSeed_]);
+    }
+    connect();
+  }
+
+ private:
+  static constexpr std::size_t kLargest = 32;
+
+  /// Across every edge lies one other triangle, which leads back.
+  bool isRegular(Index t) const {
+    return std::all_of(neighbours_[at(t)].begin(), neighbours_[at(t)].end(), [&](Index n) {
+      const Triangle& back = neighbours_[at(n)];
+      return n != t && std::find(back.begin(), back.end(), t) != back.end();
+    });
+  }
+
+  void grow(Index seed) {
+    const auto patch = static_cast<Index>(out_.regular.size());
+    const std::size_t first = out_.triangles.size();
+    const bool regular = isRegular(seed);
+    out_.regular.push_back(regular);
+    take(seed, patch);
+    for (std::size_t i = first; regular && i < out_.triangles.size(); ++i)
+      for (const Index next : neighbours_[at(out_.triangles[i])]) {
+        if (patchOf_[at(next)] >= 0) continue;
+        if (out_.triangles.size() - first < kLargest && isRegular(next))
+          take(next, patch);
+        else
+          seeds_.push_back(next);
+      }
+    std::sort(out_.triangles.begin() + static_cast<std::ptrdiff_t>(first), out_.triangles.end());
+    out_.begin.push_back(static_cast<Index>(out_.triangles.size()));
+  }
+
+  void take(Index t, Index patch) {
+    patchOf_[at(t)] = patch;
+    out_.triangles.push_back(t);
+  }
+
+  void connect() {
+    out_.neighbourBegin.push_back(0);
+    std::vector<Index> around;
+    for (std::size_t p = 0; p < out_.count(); ++p) {
+      around.clear();
+      for (const Index t : out_.trianglesOf(p))
+        for (const Index next : neighbours_[at(t)])
+          if (at(patchOf_[at(next)]) != p) around.push_back(patchOf_[at(next)]);
+      std::sort(around.begin(), around.end());
+      out_.neighbours.insert(out_.neighbours.end(), around.begin(),
+                             std::unique(around.begin(), around.end()));
+      out_.neighbourBegin.push_back(static_cast<Index>(out_.neighbours.size()));
+    }
+  }
+
+  const std::vector<Triangle>& neighbours_;
+  TrianglePatches& out_;
+  std::vector<Index>& patchOf_;
+  std::vector<Index> seeds_;
+  std::size_t nextSeed_ = 0;
+};
+
+void integratePatches(TetMesh& mesh, const Exec& exec) {
+  const TriMesh& surface = *mesh.surface;
+  TrianglePatches& patches = mesh.patches;
+  patches.origin = surface.positions.empty() ? Vec3::Zero() : boxOf(surface.positions).centre();
+  patches.sums.assign(patches.count(), {});
+  parallelFor(exec, patches.count(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p)
+      for (const Index t : patches.trianglesOf(p)) {
+        const Triangle& corners = surface.triangles[at(t)];
+        const auto corner = [&](std::size_t c) { return surface.positions[at(corners[c])] - patches.origin; };
+        patches.sums[p].add(corner(0), corner(1), corner(2));
+      }
+  });
+}
+
 }  // namespace
 
 void linkSurface(TetMesh& mesh, const Exec& exec) {
   locateVertices(mesh, exec);
   linkTriangles(mesh);
+  PatchGrower(mesh).run();
+  integratePatches(mesh, exec);
 }
 
 }  // namespace sherd

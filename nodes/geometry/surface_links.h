@@ -7,10 +7,10 @@
 
 namespace sherd {
 
-/// Fills TetMesh::vertexTet and TetMesh::surfaceNeighbours from the surface and the held triangles. A vertex
+/// Fills TetMesh::vertexTet, surfaceNeighbours and patches from the surface and the held triangles. A vertex
 /// on a face that tetrahedra share belongs to the one that an infinitely small step in the direction of (1,
-/// δ, δ²), δ → 0, leads to; exact (CGAL's predicates). −1 for a vertex outside of all. Cost O(held triangles
-/// + surface).
+/// δ, δ²), δ → 0, leads to; exact (CGAL's predicates). −1 for a vertex outside of all. Patches grow in rings
+/// up to 32 triangles, each next one beside those before. Cost O(held triangles + surface).
 void linkSurface(TetMesh& mesh, const Exec& exec);
 
 }  // namespace sherd

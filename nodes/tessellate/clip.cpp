@@ -61,11 +61,11 @@ class Clipper {
   ClippedMeshes run() {
     result_.same = EqualPositions(a_).take();
     inBlocks(a_.cutTriangles.size(), result_.skin,
-             [this](std::size_t i, CutPolygon& cut, std::vector<SkinTriangle>& out) {
+             [this](std::size_t i, CutPolygon& cut, PartedTriangles<SkinTriangle>& out) {
                return splitAtOnce(i, out) ? 0 : splitSurfaceTriangle(i, cut, out);
              });
     inBlocks(sheets_.polygons.size(), result_.sheet,
-             [this](std::size_t p, CutPolygon& cut, std::vector<SheetTriangle>& out) {
+             [this](std::size_t p, CutPolygon& cut, PartedTriangles<SheetTriangle>& out) {
                return clipPolygon(static_cast<Index>(p), cut, out);
              });
     return std::move(result_);
@@ -74,19 +74,21 @@ class Clipper {
  private:
   /// f(i, cut, out) appends to out and returns how many triangles were forced.
   template <class T, class F>
-  void inBlocks(std::size_t n, std::vector<T>& out, F f) {
+  void inBlocks(std::size_t n, PartedTriangles<T>& out, F f) {
     const std::size_t blocks = (n + kBlock - 1) / kBlock;
-    std::vector<std::vector<T>> parts(blocks);
+    std::vector<PartedTriangles<T>> made(blocks);
     std::vector<int> forced(blocks, 0);
     parallelFor(exec_, n, kBlock, [&](std::size_t begin, std::size_t end) {
       CutPolygon cut(a_.positions, result_.same);
-      parts[begin / kBlock].reserve(4 * (end - begin));
-      for (std::size_t i = begin; i < end; ++i) forced[begin / kBlock] += f(i, cut, parts[begin / kBlock]);
+      PartedTriangles<T>& own = made[begin / kBlock];
+      own.reserve(4 * kBlock, 2 * kBlock, 8 * kBlock);
+      for (std::size_t i = begin; i < end; ++i) forced[begin / kBlock] += f(i, cut, own);
     });
-    std::size_t total = 0;
-    for (const auto& part : parts) total += part.size();
-    out.reserve(total);
-    for (const auto& part : parts) out.insert(out.end(), part.begin(), part.end());
+    std::size_t triangles = 0, parts = 0, border = 0;
+    for (const auto& block : made)
+      triangles += block.triangles.size(), parts += block.parts(), border += block.border.size();
+    out.reserve(triangles, parts, border);
+    for (const auto& block : made) out.append(block);
     for (const int k : forced) result_.forced += static_cast<std::size_t>(k);
   }
 
@@ -100,7 +102,7 @@ class Clipper {
 
   /// One segment from side to side: a corner's triangle and two of what is left, along the shorter diagonal.
   /// False where it is not that simple.
-  bool splitAtOnce(std::size_t cut, std::vector<SkinTriangle>& out) const {
+  bool splitAtOnce(std::size_t cut, PartedTriangles<SkinTriangle>& out) const {
     if (a_.segmentBegin[cut + 1] - a_.segmentBegin[cut] != 1) return false;
     const Segment& segment = a_.segments[at(a_.segmentBegin[cut])];
     const std::array<Index, 3>& sides = a_.edgesOfCut[cut];
@@ -120,10 +122,11 @@ class Clipper {
     const SheetPolygon& p = sheets_.polygons[at(segment.polygon)];
     // From the crossing on ab to that on ca the lone corner is on the left.
     const Index cellA = segment.from == x ? p.back : p.front, cellB = segment.from == x ? p.front : p.back;
-    out.push_back({{a, x, y}, segment.surface, cellA});
+    out.addAlone({{a, x, y}, segment.surface, cellA});
     const bool fromX = squaredDistance(x, c) <= squaredDistance(b, y);
-    out.push_back({fromX ? Triangle{x, b, c} : Triangle{x, b, y}, segment.surface, cellB});
-    out.push_back({fromX ? Triangle{x, c, y} : Triangle{b, c, y}, segment.surface, cellB});
+    out.startPart(std::array{x, b, c, y});
+    out.triangles.push_back({fromX ? Triangle{x, b, c} : Triangle{x, b, y}, segment.surface, cellB});
+    out.triangles.push_back({fromX ? Triangle{x, c, y} : Triangle{b, c, y}, segment.surface, cellB});
     return true;
   }
 
@@ -144,7 +147,7 @@ class Clipper {
     step(to);
   }
 
-  int splitSurfaceTriangle(std::size_t cutNumber, CutPolygon& cut, std::vector<SkinTriangle>& out) const {
+  int splitSurfaceTriangle(std::size_t cutNumber, CutPolygon& cut, PartedTriangles<SkinTriangle>& out) const {
     const Index s = a_.cutTriangles[cutNumber];
     const Triangle& corners = a_.surface[at(s)];
     cut.begin(corners);
@@ -162,10 +165,10 @@ class Clipper {
       cut.addHalfEdge(segment.from, segment.to, p.back);
       cut.addHalfEdge(segment.to, segment.from, p.front);
     }
-    return cut.triangulate([&](const Triangle& t, Index region) { out.push_back({t, s, region}); });
+    return cut.triangulate(out, [&](const Triangle& t, Index region) { return SkinTriangle{t, s, region}; });
   }
 
-  int clipPolygon(Index polygon, CutPolygon& cut, std::vector<SheetTriangle>& out) const {
+  int clipPolygon(Index polygon, CutPolygon& cut, PartedTriangles<SheetTriangle>& out) const {
     const SheetPolygon& p = sheets_.polygons[at(polygon)];
     const std::span<const Index> own = sheets_.cornersOf(p), edges = sheets_.edgesOf(p);
     const Index first = a_.byPolygonBegin[at(polygon)], last = a_.byPolygonBegin[at(polygon) + 1];
@@ -186,12 +189,12 @@ class Clipper {
       cut.addInnerVertex(segment.to);
       cut.addHalfEdge(segment.to, segment.from, 0);
     }
-    return cut.triangulate([&](const Triangle& t, Index) { out.push_back({t, p.front, p.back}); });
+    return cut.triangulate(out, [&](const Triangle& t, Index) { return SheetTriangle{t, p.front, p.back}; });
   }
 
   /// A whole polygon, which is convex, by a fan from the corner that makes its smallest triangle largest.
   /// False where rounding leaves that flat.
-  bool fan(std::span<const Index> corners, const SheetPolygon& p, std::vector<SheetTriangle>& out) const {
+  bool fan(std::span<const Index> corners, const SheetPolygon& p, PartedTriangles<SheetTriangle>& out) const {
     if (!differ(corners)) return false;
     const std::size_t n = corners.size();
     const auto corner = [&](std::size_t i) { return corners[i % n]; };
@@ -209,8 +212,9 @@ class Clipper {
       if (least > largest) best = apex, largest = least;
     }
     if (n > 3 && !(largest > 1e-16 * longest * longest)) return false;
+    out.startPart(corners);
     for (std::size_t i = 1; i + 1 < n; ++i)
-      out.push_back({{corner(best), corner(best + i), corner(best + i + 1)}, p.front, p.back});
+      out.triangles.push_back({{corner(best), corner(best + i), corner(best + i + 1)}, p.front, p.back});
     return true;
   }
 

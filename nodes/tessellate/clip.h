@@ -6,6 +6,7 @@
 
 #include "base/exec.h"
 #include "tessellate/arrangement.h"
+#include "tessellate/parted_triangles.h"
 #include "types/fragments.h"
 
 namespace sherd {
@@ -24,10 +25,10 @@ struct SheetTriangle {
 };
 
 struct ClippedMeshes {
-  std::vector<Index> same;         ///< per vertex: the least-numbered one that rounding put on the same spot
-  std::vector<SkinTriangle> skin;  ///< of the cut triangles only, by source
-  std::vector<SheetTriangle> sheet;  ///< by polygon
-  std::size_t forced = 0;            ///< triangles that rounding left flat or overlapping
+  std::vector<Index> same;  ///< per vertex: the least-numbered one that rounding put on the same spot
+  PartedTriangles<SkinTriangle> skin;    ///< of the cut triangles only, by source
+  PartedTriangles<SheetTriangle> sheet;  ///< by polygon
+  std::size_t forced = 0;                ///< triangles that rounding left flat or overlapping
 };
 
 /// Traces the regions that the segments cut a triangle or polygon into and triangulates them. A region is

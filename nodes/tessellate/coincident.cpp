@@ -64,8 +64,10 @@ class LayerRemover {
     for (std::size_t v = 0; v < tookIn_.size(); ++v)
       if (meshes_.same[v] != static_cast<Index>(v)) any = true, tookIn_[at(meshes_.same[v])] = 1;
     if (!any) return;
-    std::erase_if(meshes_.skin, [&](SkinTriangle& t) { return loseCorner(t.corners, meshes_.same); });
-    std::erase_if(meshes_.sheet, [&](SheetTriangle& t) { return loseCorner(t.corners, meshes_.same); });
+    std::erase_if(meshes_.skin.triangles,
+                  [&](SkinTriangle& t) { return loseCorner(t.corners, meshes_.same); });
+    std::erase_if(meshes_.sheet.triangles,
+                  [&](SheetTriangle& t) { return loseCorner(t.corners, meshes_.same); });
     gather();
     std::sort(layers_.begin(), layers_.end());
     std::map<Triangle, std::optional<Layer>> replaced;
@@ -78,6 +80,8 @@ class LayerRemover {
       first = last;
     }
     if (!replaced.empty()) replace(replaced);
+    meshes_.skin.split();
+    meshes_.sheet.split();
   }
 
  private:
@@ -86,9 +90,9 @@ class LayerRemover {
   }
 
   void gather() {
-    for (const SkinTriangle& t : meshes_.skin)
+    for (const SkinTriangle& t : meshes_.skin.triangles)
       if (mayCoincide(t.corners)) layers_.push_back(layerOf(t.corners, kOutsideCell, t.cell, t.source));
-    for (const SheetTriangle& t : meshes_.sheet)
+    for (const SheetTriangle& t : meshes_.sheet.triangles)
       if (mayCoincide(t.corners)) layers_.push_back(layerOf(t.corners, t.front, t.back, -1));
     for (std::size_t s = 0; s < a_.surface.size(); ++s)
       if (!isCut_[s] && mayCoincide(a_.surface[s]))
@@ -102,19 +106,19 @@ class LayerRemover {
       std::sort(t.begin(), t.end());
       return replaced.contains(t);
     };
-    std::erase_if(meshes_.skin, [&](const SkinTriangle& t) { return goes(t.corners); });
-    std::erase_if(meshes_.sheet, [&](const SheetTriangle& t) { return goes(t.corners); });
+    std::erase_if(meshes_.skin.triangles, [&](const SkinTriangle& t) { return goes(t.corners); });
+    std::erase_if(meshes_.sheet.triangles, [&](const SheetTriangle& t) { return goes(t.corners); });
     for (std::size_t s = 0; s < a_.surface.size(); ++s)
       if (!isCut_[s] && goes(a_.surface[s])) isCut_[s] = 1;
     for (const auto& [corners, layer] : replaced) {
       if (!layer) continue;
       const Triangle turned{corners[0], corners[2], corners[1]};
       if (!layer->isSkin())
-        meshes_.sheet.push_back({corners, layer->above, layer->below});
+        meshes_.sheet.triangles.push_back({corners, layer->above, layer->below});
       else if (layer->above == kOutsideCell)
-        meshes_.skin.push_back({corners, layer->source, layer->below});
+        meshes_.skin.triangles.push_back({corners, layer->source, layer->below});
       else
-        meshes_.skin.push_back({turned, layer->source, layer->above});
+        meshes_.skin.triangles.push_back({turned, layer->source, layer->above});
     }
   }
 

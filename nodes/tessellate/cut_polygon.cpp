@@ -38,23 +38,26 @@ Index CutPolygon::local(Index vertex) const {
 /// In one region a vertex begins at most one half-edge, since the cells around a crack edge all differ.
 /// Followed by the vertices' own numbers; only then are those on one spot taken together.
 void CutPolygon::traceLoops(std::span<const HalfEdge> region) {
-  std::vector<bool> used(region.size(), false);
+  used_.assign(region.size(), 0);
+  loopCount_ = 0;
   for (std::size_t first = 0; first < region.size(); ++first) {
-    if (used[first]) continue;
-    loops_.emplace_back();
-    auto& loop = loops_.back();
+    if (used_[first]) continue;
+    if (loopCount_ == loops_.size()) loops_.emplace_back();
+    auto& loop = loops_[loopCount_];
+    loop.clear();
     std::size_t i = first;
-    while (i < region.size() && !used[i]) {
-      used[i] = true;
-      const Index corner = local(region[i].from);
+    while (i < region.size() && !used_[i]) {
+      used_[i] = 1;
+      const Index corner = local(region[i].from());
       if (loop.empty() || loop.back() != corner) loop.push_back(corner);
-      const auto next = std::lower_bound(region.begin(), region.end(), region[i].to,
-                                         [](const HalfEdge& h, Index v) { return h.from < v; });
-      i = next != region.end() && next->from == region[i].to ? static_cast<std::size_t>(next - region.begin())
-                                                             : region.size();
+      const std::uint64_t sought = key(static_cast<Index>(region[i].region()), region[i].to);
+      const auto next = std::lower_bound(region.begin(), region.end(), sought,
+                                         [](const HalfEdge& h, std::uint64_t k) { return h.key < k; });
+      i = next != region.end() && next->key == sought ? static_cast<std::size_t>(next - region.begin())
+                                                      : region.size();
     }
     while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
-    if (loop.size() < 3) loops_.pop_back();  // nothing, or two edges that cancel
+    loopCount_ += loop.size() >= 3;  // fewer are nothing, or two edges that cancel
   }
 }
 

@@ -3,154 +3,67 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
+#include <numeric>
+#include <optional>
 
 #include "base/parallel.h"
-#include "geometry/copy_points.h"
 #include "geometry/solid.h"
 #include "tessellate/coincident.h"
+#include "tessellate/solid_merger.h"
 #include "tessellate/solids.h"
 
 namespace sherd {
 namespace {
 
-double triangleArea(std::span<const Vec3> positions, const Triangle& t) {
-  const Vec3& a = positions[at(t[0])];
-  return 0.5 * (positions[at(t[1])] - a).cross(positions[at(t[2])] - a).norm();
-}
-
-/// Lets small solids join their neighbours.
-class SolidMerger {
- public:
-  SolidMerger(const CellFaces& faces, std::span<const Vec3> positions, Solids& solids)
-      : faces_(faces), positions_(positions), solids_(solids), joined_(solids.list.size()) {
-    for (std::size_t s = 0; s < joined_.size(); ++s) joined_[s] = static_cast<Index>(s);
-  }
-
-  /// Smallest first. Returns how many joined.
-  std::size_t mergeBelow(double minVolume) {
-    std::vector<Index> small;
-    for (std::size_t s = 0; s < solids_.list.size(); ++s)
-      if (!isLargeEnough(static_cast<Index>(s), minVolume)) small.push_back(static_cast<Index>(s));
-    if (small.empty()) return 0;
-    sumContacts();
-    std::sort(small.begin(), small.end(), [&](Index a, Index b) {
-      return std::pair(solids_.list[at(a)].volume, a) < std::pair(solids_.list[at(b)].volume, b);
-    });
-    std::size_t merged = 0;
-    for (const Index s : small) {
-      if (isLargeEnough(s, minVolume)) continue;
-      const bool joins = joinLargestNeighbour(s);
-      merged += joins;
-      if (!joins && isFlatSkin(s)) joined_[at(s)] = kNone;
-    }
-    return merged;
-  }
-
-  /// −1 for one that is nothing.
-  Index ownerOf(Index solid) const {
-    while (solid != kNone && joined_[at(solid)] != solid) solid = joined_[at(solid)];
-    return solid;
-  }
-
- private:
-  bool isLargeEnough(Index s, double minVolume) const {
-    return solids_.list[at(s)].volume > 0 && solids_.list[at(s)].volume >= minVolume;
-  }
-
-  void sumContacts() {
-    contacts_.resize(solids_.list.size());
-    for (std::size_t f = faces_.firstSheet(); f < faces_.size(); f += 2) {
-      const Index a = solids_.ofFace[f], b = solids_.ofFace[f + 1];
-      if (a == b) continue;
-      const double area = triangleArea(positions_, faces_.corners(f));
-      contacts_[at(a)][b] += area;
-      contacts_[at(b)][a] += area;
-    }
-  }
-
-  bool joinLargestNeighbour(Index small) {
-    Index best = -1;
-    double largest = 0;
-    for (const auto& [solid, area] : contacts_[at(small)])
-      if (best < 0 || area > largest) best = solid, largest = area;
-    if (best < 0) return false;  // stands alone: nothing to join
-    joined_[at(small)] = best;
-    solids_.list[at(best)].volume += solids_.list[at(small)].volume;
-    for (const auto& [solid, area] : contacts_[at(small)]) {
-      auto& others = contacts_[at(solid)];
-      others.erase(small);
-      if (solid == best) continue;
-      others[best] += area;
-      contacts_[at(best)][solid] += area;
-    }
-    contacts_[at(small)].clear();
-    return true;
-  }
-
-  static constexpr Index kNone = -1;
-
-  /// A pocket that rounding laid flat into the skin: cut faces that cover each other, and nothing between
-  /// them.
-  bool isFlatSkin(Index solid) const {
-    double area = 0;
-    for (std::size_t f = 0; f < faces_.size(); ++f) {
-      if (solids_.ofFace[f] != solid) continue;
-      if (f < faces_.firstSkin() || faces_.isSheet(f)) return false;
-      area += triangleArea(positions_, faces_.corners(f));
-    }
-    return std::abs(solids_.list[at(solid)].volume) <= 1e-9 * area * std::sqrt(area);
-  }
-
-  const CellFaces& faces_;
-  std::span<const Vec3> positions_;
-  Solids& solids_;
-  std::vector<Index> joined_;                      ///< per solid: the one that it joined, itself, or none
-  std::vector<std::map<Index, double>> contacts_;  ///< m², per solid that still stands
-};
+/// Below this share of the body's volume a piece is integrated about a point of its own: sums about the
+/// body's centre would cost it digits.
+constexpr double kSmall = 1e-6;
 
 class Assembler {
  public:
-  Assembler(const Arrangement& a, ClippedMeshes&& m, std::span<const Triangle> neighbours, double minVolume,
-            double density, const Exec& exec)
-      : a_(a),
-        m_(std::move(m)),
-        neighbours_(neighbours),
-        minVolume_(minVolume),
-        density_(density),
-        exec_(exec) {}
+  Assembler(const TetMesh& tets, Arrangement&& a, ClippedMeshes&& m, const AssembleParams& params,
+            const Exec& exec)
+      : tets_(tets), a_(std::move(a)), m_(std::move(m)), params_(params), exec_(exec) {}
 
   Fragments run() {
     std::vector<unsigned char> isCut(a_.surface.size(), 0);
     for (const Index s : a_.cutTriangles) isCut[at(s)] = 1;
     out_.counts.cutSurfaceTriangles = a_.cutTriangles.size();
     removeThinLayers(a_, m_, isCut);
-    const CellFaces faces(a_, m_, isCut);
-    Solids solids = findSolids(faces, a_.positions, neighbours_, exec_);
+    parts_.emplace(tets_, a_, m_, isCut, exec_);
     if (exec_.cancelled()) return {};
-    out_.counts.detachedParts = solids.detached;
-    SolidMerger merger(faces, a_.positions, solids);
-    out_.counts.mergedParts = merger.mergeBelow(minVolume_);
-    namePieces(solids, merger);
-    fillPieces(faces, solids);
+    findPieces();
+    numberSheets();
+    numberVertices();
+    weighCorners();
+    takePositions();
+    fillPieces();
     if (exec_.cancelled()) return {};
-    compactPositions();
-    parallelFor(exec_, out_.pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t p = begin; p < end; ++p) integrate(out_.pieces[p]);
-    });
     return std::move(out_);
   }
 
  private:
+  /// Solids, merged, in the order of their names.
+  void findPieces() {
+    Solids solids = findSolids(*parts_, a_.positions);
+    out_.counts.detachedParts = solids.detached;
+    std::vector<unsigned char> holds(params_.sites, 0);
+    for (const Solid& s : solids.list) holds[at(s.cell)] = 1;
+    out_.counts.emptyCells = static_cast<std::size_t>(std::count(holds.begin(), holds.end(), 0));
+    SolidMerger merger(*parts_, a_.positions, solids);
+    out_.counts.mergedParts = merger.mergeBelow(params_.minVolume);
+    namePieces(solids, merger);
+    listParts();
+  }
+
   void namePieces(const Solids& solids, const SolidMerger& merger) {
     std::vector<Index> order;
-    for (std::size_t s = 0; s < solids.list.size(); ++s)
-      if (merger.ownerOf(static_cast<Index>(s)) == static_cast<Index>(s))
-        order.push_back(static_cast<Index>(s));
+    for (Index s = 0; at(s) < solids.list.size(); ++s)
+      if (merger.ownerOf(s) == s) order.push_back(s);
     std::sort(order.begin(), order.end(), [&](Index a, Index b) {
       const Solid &x = solids.list[at(a)], &y = solids.list[at(b)];
-      return std::tuple(-x.volume, x.cell, a) < std::tuple(-y.volume, y.cell, b);
+      return std::tuple(-x.sums.volume, x.cell, a) < std::tuple(-y.sums.volume, y.cell, b);
     });
     std::vector<Index> number(solids.list.size(), -1);
     out_.pieces.resize(order.size());
@@ -158,65 +71,85 @@ class Assembler {
       number[at(order[i])] = static_cast<Index>(i);
       out_.pieces[i].name = fmt::format("piece_{:04}", i + 1);
       out_.pieces[i].cell = solids.list[at(order[i])].cell;
+      sums_.push_back(solids.list[at(order[i])].sums);
     }
-    pieceOf_.resize(solids.list.size());
-    for (std::size_t s = 0; s < pieceOf_.size(); ++s) {
-      const Index owner = merger.ownerOf(static_cast<Index>(s));
-      pieceOf_[s] = owner < 0 ? -1 : number[at(owner)];
+    for (std::size_t s = 0; s < number.size(); ++s)
+      if (const Index owner = merger.ownerOf(static_cast<Index>(s)); owner >= 0)
+        number[s] = number[at(owner)];
+    pieceOf_.resize(parts_->size());
+    for (std::size_t p = 0; p < pieceOf_.size(); ++p) pieceOf_[p] = number[at(solids.ofPart[p])];
+  }
+
+  /// The parts of each piece, ascending.
+  void listParts() {
+    partBegin_.assign(out_.pieces.size() + 1, 0);
+    for (const Index piece : pieceOf_)
+      if (piece >= 0) ++partBegin_[at(piece) + 1];
+    std::partial_sum(partBegin_.begin(), partBegin_.end(), partBegin_.begin());
+    partsOfPieces_.resize(at(partBegin_.back()));
+    std::vector<Index> fill(partBegin_.begin(), partBegin_.end() - 1);
+    for (std::size_t p = 0; p < pieceOf_.size(); ++p)
+      if (pieceOf_[p] >= 0) partsOfPieces_[at(fill[at(pieceOf_[p])]++)] = static_cast<Index>(p);
+  }
+
+  std::span<const Index> partsOf(std::size_t piece) const {
+    return std::span(partsOfPieces_)
+        .subspan(at(partBegin_[piece]), at(partBegin_[piece + 1] - partBegin_[piece]));
+  }
+
+  /// Sheets within one merged solid are no cracks.
+  bool isCrack(std::size_t sheetPart) const {
+    return pieceOf_[sheetPart] != pieceOf_[parts_->twin(sheetPart)];
+  }
+
+  /// Sheets are numbered as they come.
+  void numberSheets() {
+    std::map<std::array<Index, 2>, Index> numbers;
+    std::array<Index, 2> last{-1, -1};
+    Index number = -1;
+    sheetNumbers_.assign(m_.sheet.parts(), -1);
+    for (std::size_t k = 0; k < sheetNumbers_.size(); ++k) {
+      const std::size_t back = parts_->firstSheet() + 2 * k;
+      if (!isCrack(back)) continue;
+      const auto [low, high] = std::minmax(parts_->cell(back), parts_->cell(back + 1));
+      if (const std::array<Index, 2> cells{low, high}; cells != last) {
+        last = cells;
+        number = numbers.try_emplace(cells, static_cast<Index>(numbers.size())).first->second;
+      }
+      sheetNumbers_[k] = number;
     }
   }
 
-  /// −1 for faces that don't exist.
-  Index pieceOfFace(const Solids& solids, std::size_t f) const {
-    return solids.ofFace[f] < 0 ? -1 : pieceOf_[at(solids.ofFace[f])];
+  /// New vertices that no piece uses are left out; the source's own stay, in their order.
+  void numberVertices() {
+    number_.assign(a_.positions.size() - at(a_.firstCrack), -1);
+    const auto use = [&](const Triangle& t) {
+      for (const Index v : t)
+        if (v >= a_.firstCrack) number_[at(v - a_.firstCrack)] = 0;
+    };
+    for (std::size_t k = 0; k < m_.skin.parts(); ++k)
+      if (pieceOf_[parts_->firstSkin() + k] >= 0)
+        for (const SkinTriangle& t : m_.skin.of(k)) use(t.corners);
+    for (std::size_t k = 0; k < m_.sheet.parts(); ++k)
+      if (sheetNumbers_[k] >= 0)
+        for (const SheetTriangle& t : m_.sheet.of(k)) use(t.corners);
+    Index next = a_.firstCrack;
+    for (Index& n : number_)
+      if (n == 0) n = next++;
+    vertexCount_ = at(next);
   }
 
-  void reserve(const CellFaces& faces, const Solids& solids) {
-    std::vector<std::array<std::size_t, 2>> counts(out_.pieces.size(), {0, 0});
-    for (std::size_t f = 0; f < faces.size(); ++f)
-      if (const Index p = pieceOfFace(solids, f); p >= 0) ++counts[at(p)][faces.isSheet(f)];
-    for (std::size_t p = 0; p < counts.size(); ++p) {
-      Piece& piece = out_.pieces[p];
-      piece.surface.reserve(counts[p][0]);
-      piece.surfaceSource.reserve(counts[p][0]);
-      piece.surfaceCut.reserve(counts[p][0]);
-      piece.crack.reserve(counts[p][1]);
-      piece.crackNeighbour.reserve(counts[p][1]);
-      piece.crackSheet.reserve(counts[p][1]);
-    }
+  Triangle renumbered(Triangle t) const {
+    for (Index& v : t)
+      if (v >= a_.firstCrack) v = number_[at(v - a_.firstCrack)];
+    return t;
   }
 
-  void fillPieces(const CellFaces& faces, const Solids& solids) {
-    reserve(faces, solids);
-    for (std::size_t f = 0; f < faces.firstSheet(); ++f) {
-      const Index p = pieceOfFace(solids, f);
-      if (p < 0) continue;
-      Piece& piece = out_.pieces[at(p)];
-      piece.surface.push_back(faces.corners(f));
-      piece.surfaceSource.push_back(faces.source(f));
-      piece.surfaceCut.push_back(f < faces.firstSkin() ? -1 : static_cast<Index>(f - faces.firstSkin()));
-    }
-    out_.cutCorners.resize(m_.skin.size());
-    parallelFor(exec_, m_.skin.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) weigh(m_.skin[i], out_.cutCorners[i]);
+  void weighCorners() {
+    out_.cutCorners.resize(m_.skin.triangles.size());
+    parallelFor(exec_, m_.skin.triangles.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) weigh(m_.skin.triangles[i], out_.cutCorners[i]);
     });
-    for (std::size_t f = faces.firstSheet(); f < faces.size(); ++f) {
-      const Index own = pieceOfFace(solids, f), other = pieceOfFace(solids, faces.twin(f));
-      if (own == other) continue;  // within one merged solid
-      out_.pieces[at(own)].crack.push_back(faces.corners(f));
-      out_.pieces[at(own)].crackNeighbour.push_back(other);
-      out_.pieces[at(own)].crackSheet.push_back(sheetNumber(faces.cell(f), faces.cell(faces.twin(f))));
-    }
-  }
-
-  /// Sheets are numbered as they come; a sheet's triangles mostly follow one another.
-  Index sheetNumber(Index cell, Index other) {
-    const std::pair<Index, Index> cells = std::minmax(cell, other);
-    if (cells != lastCells_) {
-      lastCells_ = cells;
-      lastNumber_ = sheetNumbers_.try_emplace(cells, static_cast<Index>(sheetNumbers_.size())).first->second;
-    }
-    return lastNumber_;
   }
 
   void weigh(const SkinTriangle& skin, std::array<CornerWeights, 3>& weights) const {
@@ -231,63 +164,90 @@ class Assembler {
     }
   }
 
-  void integrate(Piece& piece) const {
+  void fillPieces() {
+    const double body = std::accumulate(sums_.begin(), sums_.end(), 0.0,
+                                        [](double sum, const SolidSums& s) { return sum + s.volume; });
+    parallelFor(exec_, out_.pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        reserve(i);
+        for (const Index part : partsOf(i)) add(at(part), out_.pieces[i]);
+        integrate(out_.pieces[i], sums_[i], sums_[i].volume < kSmall * body);
+      }
+    });
+  }
+
+  void reserve(std::size_t i) {
+    std::size_t surface = 0, crack = 0;
+    for (const Index part : partsOf(i))
+      if (!parts_->isSheet(at(part)))
+        surface += parts_->triangleCount(at(part));
+      else if (isCrack(at(part)))
+        crack += parts_->triangleCount(at(part));
+    Piece& piece = out_.pieces[i];
+    piece.surface.reserve(surface);
+    piece.surfaceSource.reserve(surface);
+    piece.surfaceCut.reserve(surface);
+    piece.crack.reserve(crack);
+    piece.crackNeighbour.reserve(crack);
+    piece.crackSheet.reserve(crack);
+  }
+
+  void add(std::size_t part, Piece& piece) const {
+    if (parts_->isUncut(part)) {
+      for (const Index t : parts_->uncutTriangles(part)) piece.surface.push_back(a_.surface[at(t)]);
+      const auto triangles = parts_->uncutTriangles(part);
+      piece.surfaceSource.insert(piece.surfaceSource.end(), triangles.begin(), triangles.end());
+      piece.surfaceCut.resize(piece.surface.size(), -1);
+    } else if (parts_->isSkin(part)) {
+      const std::size_t k = parts_->skinNumber(part);
+      for (std::size_t t = m_.skin.begin(k); t < m_.skin.end(k); ++t) {
+        piece.surface.push_back(renumbered(m_.skin.triangles[t].corners));
+        piece.surfaceSource.push_back(m_.skin.triangles[t].source);
+        piece.surfaceCut.push_back(static_cast<Index>(t));
+      }
+    } else if (isCrack(part)) {
+      parts_->forTriangles(part, [&](const Triangle& t) { piece.crack.push_back(renumbered(t)); });
+      piece.crackNeighbour.resize(piece.crack.size(), pieceOf_[parts_->twin(part)]);
+      piece.crackSheet.resize(piece.crack.size(), sheetNumbers_[parts_->sheetNumber(part)]);
+    }
+  }
+
+  void integrate(Piece& piece, const SolidSums& sums, bool isSmall) const {
     const std::span<const Triangle> lists[] = {piece.surface, piece.crack};
-    const SolidIntegrals integrals = integrateSolid(out_.positions, lists);
+    const SolidIntegrals integrals =
+        isSmall ? integrateSolid(out_.positions, lists) : integralsOf(sums, tets_.patches.origin);
     piece.volume = integrals.volume;
     piece.centreOfMass = integrals.centroid;
-    piece.inertia = integrals.inertia(density_);
+    piece.inertia = integrals.inertia(params_.density);
   }
 
-  /// Drops new vertices that no piece uses; the source's own stay, in their order.
-  void compactPositions() {
-    const std::size_t first = at(a_.firstCrack), all = a_.positions.size();
-    std::vector<Index> number(all - first, -1);
-    const auto use = [&](const Triangle& t) {
-      for (const Index v : t)
-        if (v >= a_.firstCrack) number[at(v) - first] = 0;
-    };
-    for (const Piece& p : out_.pieces) {
-      for (std::size_t t = 0; t < p.surface.size(); ++t)
-        if (p.surfaceCut[t] >= 0) use(p.surface[t]);
-      for (const Triangle& t : p.crack) use(t);
-    }
-    std::size_t count = first;
-    for (Index& n : number)
-      if (n == 0) n = static_cast<Index>(count++);
-    out_.positions.resize(count);
-    copyPoints(std::span(a_.positions).first(first), out_.positions.data());
-    for (std::size_t v = first; v < all; ++v)
-      if (number[v - first] >= 0) out_.positions[at(number[v - first])] = a_.positions[v];
-    const auto renumber = [&](Triangle& t) {
-      for (Index& v : t)
-        if (v >= a_.firstCrack) v = number[at(v) - first];
-    };
-    for (Piece& p : out_.pieces) {
-      for (std::size_t t = 0; t < p.surface.size(); ++t)
-        if (p.surfaceCut[t] >= 0) renumber(p.surface[t]);
-      for (Triangle& t : p.crack) renumber(t);
-    }
+  void takePositions() {
+    for (std::size_t v = 0; v < number_.size(); ++v)
+      if (number_[v] >= 0) a_.positions[at(number_[v])] = a_.positions[at(a_.firstCrack) + v];
+    a_.positions.resize(vertexCount_);
+    out_.positions = std::move(a_.positions);
   }
 
-  const Arrangement& a_;
+  const TetMesh& tets_;
+  Arrangement a_;
   ClippedMeshes m_;
-  std::span<const Triangle> neighbours_;
-  double minVolume_, density_;
+  AssembleParams params_;
   const Exec& exec_;
-  std::vector<Index> pieceOf_;                             ///< per solid
-  std::map<std::pair<Index, Index>, Index> sheetNumbers_;  ///< by the two cells
-  std::pair<Index, Index> lastCells_{-1, -1};
-  Index lastNumber_ = -1;
+  std::optional<CellParts> parts_;
+  std::vector<Index> pieceOf_;                    ///< per part; −1 for what is left out
+  std::vector<Index> partBegin_, partsOfPieces_;  ///< per piece
+  std::vector<SolidSums> sums_;                   ///< per piece
+  std::vector<Index> sheetNumbers_;               ///< per part of the sheets; −1 within a merged solid
+  std::vector<Index> number_;                     ///< per new vertex: its number in the result, or −1
+  std::size_t vertexCount_ = 0;
   Fragments out_;
 };
 
 }  // namespace
 
-Fragments assemblePieces(const Arrangement& arrangement, ClippedMeshes meshes,
-                         std::span<const Triangle> neighbours, double minVolume, double density,
-                         const Exec& exec) {
-  return Assembler(arrangement, std::move(meshes), neighbours, minVolume, density, exec).run();
+Fragments assemblePieces(const TetMesh& tets, Arrangement arrangement, ClippedMeshes meshes,
+                         const AssembleParams& params, const Exec& exec) {
+  return Assembler(tets, std::move(arrangement), std::move(meshes), params, exec).run();
 }
 
 }  // namespace sherd

@@ -8,15 +8,18 @@
 
 namespace sherd {
 
+struct AssembleParams {
+  std::size_t sites = 1;  ///< cells
+  double minVolume = 0;   ///< m³
+  double density = 1;     ///< kg/m³
+};
+
 /// Gathers each cell's skin and sheets, splits it into connected solids (joined by shared edges; a void
-/// belongs to the solid around it), lets solids smaller than `minVolume` (m³) join the neighbour with the
-/// largest contact area, and fills in all of Fragments but `tets`, `material`, and what the cells' search
-/// found. Solids without a neighbour stay, however small, but for pockets of cut
-/// skin that rounding laid flat. `neighbours`: TetMesh::surfaceNeighbours. When exec
-/// is cancelled it ends soon with something unfinished: check exec.cancelled() afterwards. Cost O(surface +
-/// new triangles).
-Fragments assemblePieces(const Arrangement& arrangement, ClippedMeshes meshes,
-                         std::span<const Triangle> neighbours, double minVolume, double density,
-                         const Exec& exec);
+/// belongs to the solid around it), lets small solids join their neighbours (solid_merger.h), and fills in
+/// all of Fragments but `tets`, `material`, and what the cells' search found. `tets` has the links and
+/// patches of geometry/surface_links.h. When exec is cancelled it ends soon with something unfinished: check
+/// exec.cancelled() afterwards. Cost: copying the surface, plus O(patches + new triangles).
+Fragments assemblePieces(const TetMesh& tets, Arrangement arrangement, ClippedMeshes meshes,
+                         const AssembleParams& params, const Exec& exec);
 
 }  // namespace sherd

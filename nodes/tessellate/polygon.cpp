@@ -11,7 +11,7 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Loop = std::vector<Index>;
 
-constexpr double kGoodAngle = 0.25;  ///< sine of a least angle that needs no flips
+constexpr double kGoodAngle = 0.0625;  ///< squared sine of a least angle that needs no flips
 
 class Plane {
  public:
@@ -21,6 +21,11 @@ class Plane {
   int turn(Index a, Index b, Index c) const {
     const PlanarCorner &p = corners_[at(a)], &q = corners_[at(b)], &r = corners_[at(c)];
     if ((p.lines & q.lines & r.lines) != 0) return 0;
+    const double left = (p.point.x() - r.point.x()) * (q.point.y() - r.point.y()),
+                 right = (p.point.y() - r.point.y()) * (q.point.x() - r.point.x());
+    // Shewchuk's bound for the first stage (Adaptive precision floating-point arithmetic, 1997).
+    if (std::abs(left - right) > 4e-16 * (std::abs(left) + std::abs(right)) + 1e-290)
+      return left > right ? 1 : -1;
     return static_cast<int>(CGAL::orientation(Kernel::Point_2(p.point.x(), p.point.y()),
                                               Kernel::Point_2(q.point.x(), q.point.y()),
                                               Kernel::Point_2(r.point.x(), r.point.y())));
@@ -28,15 +33,21 @@ class Plane {
   bool inClosedTriangle(Index a, Index b, Index c, Index p) const {
     return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
   }
-  /// Sine of the least angle, negative where the triangle is turned over, 0 where it is flat.
+  /// Squared sine of the least angle, negative where the triangle is turned over, 0 where it is flat.
   double quality(Index a, Index b, Index c) const {
     const Vec2 u = point(b) - point(a), v = point(c) - point(a), w = point(c) - point(b);
     const double area2 = u.x() * v.y() - u.y() * v.x();
-    double sides[] = {u.squaredNorm(), v.squaredNorm(), w.squaredNorm()};
-    std::sort(sides, sides + 3);
-    return sides[0] > 0 ? area2 / std::sqrt(sides[1] * sides[2]) : 0;
+    const double x = u.squaredNorm(), y = v.squaredNorm(), z = w.squaredNorm();
+    // The two longest sides enclose the least angle.
+    const double longest = std::max({x, y, z}), least = std::min({x, y, z});
+    const double middle = std::max(std::min(x, y), std::min(std::max(x, y), z));
+    return least > 0 ? area2 / longest * (std::abs(area2) / middle) : 0;
   }
   const Vec2& point(Index i) const { return corners_[at(i)].point; }
+  std::uint32_t lines(Index i) const { return corners_[at(i)].lines; }
+  std::uint32_t linesOfSides(Index a, Index b, Index c) const {
+    return (lines(a) & lines(b)) | (lines(b) & lines(c)) | (lines(c) & lines(a));
+  }
 
   /// Do the open segments pq and rs, which share no corner, meet?
   bool segmentsMeet(Index p, Index q, Index r, Index s) const {
@@ -102,18 +113,25 @@ bool bridgeHole(const Plane& plane, Loop& outer, const Loop& hole, std::span<con
   return found != bridges.end();
 }
 
+/// What lies across a triangle's sides: triangle · 3 + side, −1 for nothing.
+using Links = std::vector<std::array<Index, 3>>;
+
 /// Cuts ears off one loop, best first.
 class EarCutter {
  public:
-  EarCutter(const Plane& plane, const Loop& loop) : plane_(plane), loop_(loop), quality_(loop.size()) {}
-
-  void cut(PolygonTriangulation& out) {
+  void cut(const Plane& plane, const Loop& loop, PolygonTriangulation& out, Links& links) {
+    plane_ = &plane;
+    loop_ = loop;
+    across_.assign(loop.size(), -1);
+    quality_.resize(loop.size());
+    points_.resize(loop.size());
+    for (std::size_t i = 0; i < loop.size(); ++i) points_[i] = plane.point(loop[i]);
+    judgeAll();
     bool stale = false;  // are there ears judged before another ear was cut?
-    for (std::size_t i = 0; i < loop_.size(); ++i) quality_[i] = judge(i);
     while (loop_.size() > 3) {
       std::size_t best = bestEar();
       if (quality_[best] < 0 && stale) {
-        for (std::size_t i = 0; i < loop_.size(); ++i) quality_[i] = judge(i);
+        judgeAll();
         stale = false;
         best = bestEar();
       }
@@ -121,28 +139,40 @@ class EarCutter {
         best = leastBad();
         ++out.forced;
       }
-      emit(best, out);
-      loop_.erase(loop_.begin() + static_cast<std::ptrdiff_t>(best));
-      quality_.erase(quality_.begin() + static_cast<std::ptrdiff_t>(best));
-      const std::size_t n = loop_.size();
-      for (const std::size_t i : {(best + n - 1) % n, best % n}) quality_[i] = judge(i);
+      remove(best, out, links);
       stale = true;
     }
-    if (plane_.turn(loop_[0], loop_[1], loop_[2]) <= 0) ++out.forced;
-    emit(1, out);
+    if (plane_->turn(loop_[0], loop_[1], loop_[2]) <= 0) ++out.forced;
+    emit(1, out, links);
+    link(links, across_[2], static_cast<Index>(3 * out.triangles.size() - 1));
   }
 
  private:
-  Index before(std::size_t i) const { return loop_[(i + loop_.size() - 1) % loop_.size()]; }
-  Index after(std::size_t i) const { return loop_[(i + 1) % loop_.size()]; }
+  std::size_t previous(std::size_t i) const { return i == 0 ? loop_.size() - 1 : i - 1; }
+  std::size_t next(std::size_t i) const { return i + 1 == loop_.size() ? 0 : i + 1; }
+  Index before(std::size_t i) const { return loop_[previous(i)]; }
+  Index after(std::size_t i) const { return loop_[next(i)]; }
+
+  void judgeAll() {
+    for (std::size_t i = 0; i < loop_.size(); ++i) quality_[i] = judge(i);
+  }
 
   /// The ear's quality, or −1 where it is none.
   double judge(std::size_t i) const {
     const Index a = before(i), b = loop_[i], c = after(i);
-    if (a == c || plane_.turn(a, b, c) <= 0) return -1;
-    for (const Index p : loop_)
-      if (p != a && p != b && p != c && plane_.inClosedTriangle(a, b, c, p)) return -1;
-    return std::max(0.0, plane_.quality(a, b, c));
+    if (a == c || plane_->turn(a, b, c) <= 0) return -1;
+    const Vec2 &p = points_[previous(i)], &q = points_[i], &r = points_[next(i)];
+    const Vec2 low = p.cwiseMin(q).cwiseMin(r), high = p.cwiseMax(q).cwiseMax(r);
+    const std::uint32_t sides = plane_->linesOfSides(a, b, c);
+    for (std::size_t k = 0; k < loop_.size(); ++k) {
+      const Vec2& x = points_[k];
+      const Index corner = loop_[k];
+      const bool isBeyond = x.x() < low.x() || x.x() > high.x() || x.y() < low.y() || x.y() > high.y();
+      // Rounding may have put a corner on one of the ear's sides beyond it.
+      if (isBeyond && (plane_->lines(corner) & sides) == 0) continue;
+      if (corner != a && corner != b && corner != c && plane_->inClosedTriangle(a, b, c, corner)) return -1;
+    }
+    return std::max(0.0, plane_->quality(a, b, c));
   }
   std::size_t bestEar() const {
     return static_cast<std::size_t>(std::max_element(quality_.begin(), quality_.end()) - quality_.begin());
@@ -151,71 +181,93 @@ class EarCutter {
     std::size_t best = 0;
     double most = -1e300;
     for (std::size_t i = 0; i < loop_.size(); ++i) {
-      const double q = before(i) == after(i) ? -1e200 : plane_.quality(before(i), loop_[i], after(i));
+      const double q = before(i) == after(i) ? -1e200 : plane_->quality(before(i), loop_[i], after(i));
       if (q > most) most = q, best = i;
     }
     return best;
   }
-  void emit(std::size_t i, PolygonTriangulation& out) const {
-    out.triangles.push_back({before(i), loop_[i], after(i)});
+
+  static void link(Links& links, Index one, Index other) {
+    if (one >= 0) links[at(one / 3)][at(one % 3)] = other;
+    if (other >= 0) links[at(other / 3)][at(other % 3)] = one;
   }
 
-  const Plane& plane_;
+  void emit(std::size_t i, PolygonTriangulation& out, Links& links) const {
+    const auto first = static_cast<Index>(3 * out.triangles.size());
+    out.triangles.push_back({before(i), loop_[i], after(i)});
+    links.push_back({-1, -1, -1});
+    link(links, across_[previous(i)], first);
+    link(links, across_[i], first + 1);
+  }
+
+  void remove(std::size_t i, PolygonTriangulation& out, Links& links) {
+    emit(i, out, links);
+    across_[previous(i)] = static_cast<Index>(3 * out.triangles.size() - 1);
+    const auto gone = static_cast<std::ptrdiff_t>(i);
+    loop_.erase(loop_.begin() + gone);
+    across_.erase(across_.begin() + gone);
+    quality_.erase(quality_.begin() + gone);
+    points_.erase(points_.begin() + gone);
+    const std::size_t n = loop_.size();
+    for (const std::size_t k : {(i + n - 1) % n, i % n}) quality_[k] = judge(k);
+  }
+
+  const Plane* plane_ = nullptr;
   Loop loop_;
+  std::vector<Index> across_;  ///< per slot: the side of a triangle beyond the edge to the next, −1 for none
   std::vector<double> quality_;
+  std::vector<Vec2> points_;
 };
 
-/// One pass over all inner edges; returns whether any was flipped.
-bool flipPass(const Plane& plane, std::vector<Triangle>& triangles,
-              std::span<const std::pair<Index, Index>> fixed) {
-  struct Side {
-    Index low, high, opposite;
-    std::size_t triangle;
-    bool forward;
-  };
-  std::vector<Side> sides;
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Index a = triangles[t][c], b = triangles[t][(c + 1) % 3];
-      sides.push_back({std::min(a, b), std::max(a, b), triangles[t][(c + 2) % 3], t, a < b});
+/// Flips inner edges while that enlarges the least angle beside them.
+class EdgeFlipper {
+ public:
+  void run(const Plane& plane, std::vector<Triangle>& triangles, Links& links) {
+    const bool goodAlready = std::all_of(triangles.begin(), triangles.end(), [&](const Triangle& t) {
+      return plane.quality(t[0], t[1], t[2]) > kGoodAngle;
+    });
+    if (goodAlready) return;
+    open_.clear();
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      for (Index side = 0; side < 3; ++side)
+        if (links[t][at(side)] > static_cast<Index>(3 * t)) open_.push_back(static_cast<Index>(3 * t) + side);
+    // Rounding could let flips go in circles.
+    std::size_t left = 64 * triangles.size();
+    while (!open_.empty() && left-- > 0) {
+      const Index side = open_.back();
+      open_.pop_back();
+      if (links[at(side / 3)][at(side % 3)] >= 0) tryFlip(plane, triangles, links, side);
     }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tuple(a.low, a.high, a.triangle) < std::tuple(b.low, b.high, b.triangle);
-  });
-  std::vector<bool> touched(triangles.size(), false);
-  bool any = false;
-  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-    const Side &s = sides[i], &t = sides[i + 1];
-    if (s.low != t.low || s.high != t.high || s.forward == t.forward) continue;
-    if (touched[s.triangle] || touched[t.triangle]) continue;
-    if (std::binary_search(fixed.begin(), fixed.end(), std::pair(s.low, s.high))) continue;
-    const Side &left = s.forward ? s : t, &right = s.forward ? t : s;
-    const Index a = s.low, b = s.high, c = left.opposite, d = right.opposite;
-    if (c == d || plane.turn(d, b, c) <= 0 || plane.turn(c, a, d) <= 0) continue;
+  }
+
+ private:
+  void tryFlip(const Plane& plane, std::vector<Triangle>& triangles, Links& links, Index side) {
+    const Index other = links[at(side / 3)][at(side % 3)];
+    Triangle &left = triangles[at(side / 3)], &right = triangles[at(other / 3)];
+    const std::size_t i = at(side % 3), j = at(other % 3);
+    const Index a = left[i], b = left[(i + 1) % 3], c = left[(i + 2) % 3], d = right[(j + 2) % 3];
+    if (c == d) return;
     const double now = std::min(plane.quality(a, b, c), plane.quality(b, a, d));
     const double then = std::min(plane.quality(d, b, c), plane.quality(c, a, d));
-    if (then <= now * (1 + 1e-9) + 1e-300) continue;
-    triangles[left.triangle] = {d, b, c};
-    triangles[right.triangle] = {c, a, d};
-    touched[left.triangle] = touched[right.triangle] = any = true;
+    if (then <= now * (1 + 1e-9) + 1e-300) return;
+    if (plane.turn(d, b, c) <= 0 || plane.turn(c, a, d) <= 0) return;
+    const Index bc = links[at(side / 3)][(i + 1) % 3], ca = links[at(side / 3)][(i + 2) % 3],
+                ad = links[at(other / 3)][(j + 1) % 3], db = links[at(other / 3)][(j + 2) % 3];
+    left = {d, b, c};
+    right = {c, a, d};
+    const Index l = 3 * (side / 3), r = 3 * (other / 3);
+    const std::array<std::array<Index, 2>, 5> pairs{
+        {{l, db}, {l + 1, bc}, {l + 2, r + 2}, {r, ca}, {r + 1, ad}}};
+    for (const auto& [own, beyond] : pairs) {
+      links[at(own / 3)][at(own % 3)] = beyond;
+      if (beyond < 0) continue;
+      links[at(beyond / 3)][at(beyond % 3)] = own;
+      if (own != l + 2) open_.push_back(own);
+    }
   }
-  return any;
-}
 
-void flipToBetterAngles(const Plane& plane, std::span<const Loop> loops, std::vector<Triangle>& triangles) {
-  if (triangles.size() < 2) return;
-  const bool goodAlready = std::all_of(triangles.begin(), triangles.end(), [&](const Triangle& t) {
-    return plane.quality(t[0], t[1], t[2]) > kGoodAngle;
-  });
-  if (goodAlready) return;
-  std::vector<std::pair<Index, Index>> fixed;
-  for (const Loop& loop : loops)
-    for (std::size_t i = 0; i < loop.size(); ++i)
-      fixed.push_back(std::minmax(loop[i], loop[(i + 1) % loop.size()]));
-  std::sort(fixed.begin(), fixed.end());
-  for (std::size_t pass = 0; pass < 4 * triangles.size() && flipPass(plane, triangles, fixed); ++pass) {
-  }
-}
+  std::vector<Index> open_;  ///< sides to look at
+};
 
 /// Splits a loop of four along the better of its diagonals; false where neither leaves two proper triangles.
 bool splitQuad(const Plane& plane, const Loop& q, std::vector<Triangle>& out) {
@@ -255,38 +307,57 @@ double loopArea2(std::span<const PlanarCorner> corners, const std::vector<Index>
   return sum;
 }
 
-PolygonTriangulation triangulatePolygon(std::span<const PlanarCorner> corners, std::span<const Loop> loops) {
+struct PolygonTriangulator::Workspace {
   PolygonTriangulation result;
+  Links links;
+  EarCutter ears;
+  EdgeFlipper flipper;
+
+  void withHoles(const Plane& plane, std::span<const PlanarCorner> corners, std::span<const Loop> loops) {
+    std::vector<Loop> outers, holes;
+    for (const Loop& loop : loops) (loopArea2(corners, loop) >= 0 ? outers : holes).push_back(loop);
+    if (outers.empty())
+      outers.swap(holes);  // all areas rounded away: the triangles are as flat as the region
+    std::vector<std::vector<Loop>> holesOf(outers.size());
+    for (const Loop& hole : holes) {
+      std::size_t owner = 0;
+      for (std::size_t o = 0; o < outers.size() && outers.size() > 1; ++o)
+        if (pointInLoop(plane, outers[o], plane.point(hole[0]))) owner = o;
+      holesOf[owner].push_back(hole);
+    }
+    for (std::size_t o = 0; o < outers.size(); ++o) {
+      for (std::size_t h = 0; h < holesOf[o].size(); ++h)
+        if (!bridgeHole(plane, outers[o], holesOf[o][h], std::span(holesOf[o]).subspan(h + 1)))
+          ++result.forced;
+      ears.cut(plane, outers[o], result, links);
+    }
+  }
+};
+
+PolygonTriangulator::PolygonTriangulator() : workspace_(std::make_unique<Workspace>()) {}
+PolygonTriangulator::~PolygonTriangulator() = default;
+PolygonTriangulator::PolygonTriangulator(PolygonTriangulator&&) noexcept = default;
+PolygonTriangulator& PolygonTriangulator::operator=(PolygonTriangulator&&) noexcept = default;
+
+const PolygonTriangulation& PolygonTriangulator::triangulate(std::span<const PlanarCorner> corners,
+                                                             std::span<const Loop> loops) {
+  Workspace& w = *workspace_;
+  w.result.triangles.clear();
+  w.result.forced = 0;
   const Plane plane(corners);
   if (loops.size() == 1 && loops[0].size() == 3) {
-    result.triangles.push_back({loops[0][0], loops[0][1], loops[0][2]});
-    return result;
+    w.result.triangles.push_back({loops[0][0], loops[0][1], loops[0][2]});
+    return w.result;
   }
-  if (loops.size() == 1 && loops[0].size() == 4 && splitQuad(plane, loops[0], result.triangles))
-    return result;
-  std::vector<Loop> outers, holes;
-  for (const Loop& loop : loops) {
-    (loops.size() == 1 || loopArea2(corners, loop) >= 0 ? outers : holes).push_back(loop);
-  }
-  if (outers.empty()) outers.swap(holes);  // all areas rounded away: the triangles are as flat as the region
-  std::vector<std::vector<Loop>> holesOf(outers.size());
-  for (const Loop& hole : holes) {
-    std::size_t owner = 0;
-    for (std::size_t o = 0; o < outers.size() && outers.size() > 1; ++o)
-      if (pointInLoop(plane, outers[o], plane.point(hole[0]))) owner = o;
-    holesOf[owner].push_back(hole);
-  }
-  for (std::size_t o = 0; o < outers.size(); ++o) {
-    Loop loop = outers[o];
-    for (std::size_t h = 0; h < holesOf[o].size(); ++h) {
-      const std::span<const Loop> others(holesOf[o].begin() + static_cast<std::ptrdiff_t>(h) + 1,
-                                         holesOf[o].end());
-      if (!bridgeHole(plane, loop, holesOf[o][h], others)) ++result.forced;
-    }
-    EarCutter(plane, loop).cut(result);
-  }
-  flipToBetterAngles(plane, loops, result.triangles);
-  return result;
+  if (loops.size() == 1 && loops[0].size() == 4 && splitQuad(plane, loops[0], w.result.triangles))
+    return w.result;
+  w.links.clear();
+  if (loops.size() == 1)
+    w.ears.cut(plane, loops[0], w.result, w.links);
+  else
+    w.withHoles(plane, corners, loops);
+  w.flipper.run(plane, w.result.triangles, w.links);
+  return w.result;
 }
 
 }  // namespace sherd

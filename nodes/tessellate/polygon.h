@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -26,9 +27,22 @@ struct PolygonTriangulation {
 /// different points. Uses no corner that is not in a loop and adds none, and every loop edge is an edge of
 /// exactly one triangle, in the loop's direction, whatever the coordinates are. Ears are cut by exact
 /// predicates on the rounded points, best first, then edges are flipped to enlarge the least angle (a
-/// constrained Delaunay triangulation where rounding allows). Cost O(n²) for n corners.
-PolygonTriangulation triangulatePolygon(std::span<const PlanarCorner> corners,
-                                        std::span<const std::vector<Index>> loops);
+/// constrained Delaunay triangulation where rounding allows, but for the bridges to holes). Cost O(n²) for n
+/// corners. Keeps its memory from polygon to polygon.
+class PolygonTriangulator {
+ public:
+  PolygonTriangulator();
+  ~PolygonTriangulator();
+  PolygonTriangulator(PolygonTriangulator&&) noexcept;
+  PolygonTriangulator& operator=(PolygonTriangulator&&) noexcept;
+  /// Good until the next call.
+  const PolygonTriangulation& triangulate(std::span<const PlanarCorner> corners,
+                                          std::span<const std::vector<Index>> loops);
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> workspace_;
+};
 
 /// Twice the signed area of a loop.
 double loopArea2(std::span<const PlanarCorner> corners, const std::vector<Index>& loop);

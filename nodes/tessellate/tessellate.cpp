@@ -1,8 +1,8 @@
 #include "tessellate/tessellate.h"
 
 #include <algorithm>
+#include <numeric>
 
-#include "geometry/solid.h"
 #include "geometry/surface_links.h"
 #include "tessellate/arrangement.h"
 #include "tessellate/canonical.h"
@@ -68,6 +68,11 @@ OwnSurface ownSurface(const TetMesh& cage) {
   return own;
 }
 
+double enclosedVolume(const TrianglePatches& patches) {
+  return std::accumulate(patches.sums.begin(), patches.sums.end(), 0.0,
+                         [](double sum, const SolidSums& s) { return sum + s.volume; });
+}
+
 Result<Cut> cutConforming(const OwnSurface& own, const Partition& cells, CellMode mode, const Exec& exec) {
   Cut cut;
   std::vector<Index> nodeCell = cells.label;
@@ -85,14 +90,6 @@ Result<Cut> cutConforming(const OwnSurface& own, const Partition& cells, CellMod
   return cut;
 }
 
-std::size_t emptyCells(const Partition& cells, const Arrangement& arrangement, const ClippedMeshes& meshes) {
-  std::vector<bool> holds(cells.siteCount(), false);
-  for (const Index cell : arrangement.surfaceLabel) holds[at(cell)] = true;
-  for (const SkinTriangle& t : meshes.skin) holds[at(t.cell)] = true;
-  for (const SheetTriangle& t : meshes.sheet) holds[at(t.front)] = holds[at(t.back)] = true;
-  return static_cast<std::size_t>(std::count(holds.begin(), holds.end(), false));
-}
-
 }  // namespace
 
 Result<Fragments> tessellate(const Partition& cells, const TessellateParams& params, const Exec& exec) {
@@ -101,29 +98,30 @@ Result<Fragments> tessellate(const Partition& cells, const TessellateParams& par
   if (params.surface == SurfaceMode::Conforming) {
     own = ownSurface(*tets);
     tets = own.tets;
-  } else if (tets->vertexTet.empty() || tets->surfaceNeighbours.empty()) {
+  } else if (tets->vertexTet.empty() || tets->patches.triangles.empty()) {
     auto linked = std::make_shared<TetMesh>(*tets);
     linkSurface(*linked, exec);
     tets = linked;
   }
-  const TriMesh& surface = *tets->surface;
-  SHERD_ASSIGN(const Cut cut, params.surface == SurfaceMode::Conforming
-                                  ? cutConforming(own, cells, params.cells, exec)
-                              : params.cells == CellMode::Exact ? cutExactly(*tets, cells, exec)
-                                                                : cutCanonically(*tets, cells, exec));
+  SHERD_ASSIGN(Cut cut, params.surface == SurfaceMode::Conforming
+                            ? cutConforming(own, cells, params.cells, exec)
+                        : params.cells == CellMode::Exact ? cutExactly(*tets, cells, exec)
+                                                          : cutCanonically(*tets, cells, exec));
   if (exec.cancelled()) return cancelledError();
   exec.progress(0.5);
   ClippedMeshes meshes = clip(cut.arrangement, cut.sheets, exec);
   if (exec.cancelled()) return cancelledError();
   exec.progress(0.8);
-  const std::size_t forced = meshes.forced, empty = emptyCells(cells, cut.arrangement, meshes);
-  const double volume = solidVolume(surface.positions, surface.triangles);
-  Fragments result = assemblePieces(cut.arrangement, std::move(meshes), tets->surfaceNeighbours,
-                                    std::max(params.minVolume * volume, params.minVolumeAbsolute),
-                                    cells.material.density, exec);
+  const std::size_t forced = meshes.forced;
+  const AssembleParams assembly{
+      .sites = cells.siteCount(),
+      .minVolume = std::max(params.minVolume * enclosedVolume(tets->patches), params.minVolumeAbsolute),
+      .density = cells.material.density};
+  Fragments result = assemblePieces(*tets, std::move(cut.arrangement), std::move(meshes), assembly, exec);
   if (exec.cancelled()) return cancelledError();
-  if (!surface.piece.empty())  // names grow with depth: piece_0003_0002
-    for (Piece& piece : result.pieces) piece.name.replace(0, std::string_view("piece").size(), surface.piece);
+  if (const std::string& parent = tets->surface->piece; !parent.empty())
+    for (Piece& piece : result.pieces)  // names grow with depth: piece_0003_0002
+      piece.name.replace(0, std::string_view("piece").size(), parent);
   result.tets = tets;
   result.material = cells.material;
   result.sites = cells.siteCount();
@@ -133,7 +131,6 @@ Result<Fragments> tessellate(const Partition& cells, const TessellateParams& par
   result.counts.cutTets = cut.sheets.cutTets;
   result.counts.crackTriangles = cut.sheets.corners.size() - 2 * cut.sheets.polygons.size();
   result.counts.forcedTriangles = forced;
-  result.counts.emptyCells = empty;
   return result;
 }
 

@@ -14,6 +14,9 @@ void hashValue(Hasher& hasher, const TetMesh& mesh) {
   hasher.add(mesh.nodes).add(mesh.tets).add(mesh.neighbours).add(mesh.boundary);
   hasher.add(mesh.heldBegin).add(mesh.held).add(mesh.insideFraction);
   hasher.add(mesh.vertexTet).add(mesh.surfaceNeighbours);
+  hasher.add(mesh.patches.begin).add(mesh.patches.triangles).add(mesh.patches.regular);
+  hasher.add(mesh.patches.neighbourBegin).add(mesh.patches.neighbours).add(mesh.patches.sums);
+  hashBits(hasher, mesh.patches.origin);
   hashBits(hasher, mesh.quality);
 }
 
@@ -21,7 +24,9 @@ std::size_t byteSize(const TetMesh& mesh) {
   return (mesh.surface ? byteSize(*mesh.surface) : 0) + mesh.nodes.size() * sizeof(Vec3) +
          mesh.tets.size() * (2 * sizeof(Tetra) + sizeof(double)) + mesh.boundary.size() * sizeof(Triangle) +
          (mesh.held.size() + mesh.heldBegin.size() + mesh.vertexTet.size()) * sizeof(Index) +
-         mesh.surfaceNeighbours.size() * sizeof(Triangle);
+         mesh.surfaceNeighbours.size() * sizeof(Triangle) +
+         (2 * mesh.patches.triangles.size() + mesh.patches.neighbours.size()) * sizeof(Index) +
+         mesh.patches.count() * (sizeof(SolidSums) + 2 * sizeof(Index) + 1);
 }
 
 void saveValue(ArchiveWriter& to, const TetMesh& mesh) {
@@ -34,19 +39,32 @@ void saveValue(ArchiveWriter& to, const TetMesh& mesh) {
   to.array(mesh.held);
   to.array(mesh.vertexTet);
   to.array(mesh.surfaceNeighbours);
+  const TrianglePatches& patches = mesh.patches;
+  to.array(patches.begin);
+  to.array(patches.triangles);
+  to.array(patches.neighbourBegin);
+  to.array(patches.neighbours);
+  to.array(patches.regular);
+  to.array(patches.sums);
+  putBits(to, patches.origin);
   to.array(mesh.insideFraction);
   putBits(to, mesh.quality);
 }
 
 namespace {
 
-/// The lists of held triangles follow one another without gap and name triangles of the surface.
-bool heldIsSound(const TetMesh& mesh) {
-  const std::vector<Index>& begin = mesh.heldBegin;
-  if (begin.empty()) return mesh.held.empty();
-  return begin.size() == mesh.tets.size() + 1 && begin.front() == 0 &&
-         std::is_sorted(begin.begin(), begin.end()) && at(begin.back()) == mesh.held.size() &&
-         allInRange(mesh.held, 0, mesh.surface ? mesh.surface->triangles.size() : 0);
+/// `count` lists that follow one another without gap, of numbers below `end`; or nothing at all.
+bool listsAreSound(const std::vector<Index>& begin, const std::vector<Index>& list, std::size_t count,
+                   std::size_t end) {
+  if (begin.empty()) return list.empty();
+  return begin.size() == count + 1 && begin.front() == 0 && std::is_sorted(begin.begin(), begin.end()) &&
+         at(begin.back()) == list.size() && allInRange(list, 0, end);
+}
+
+bool patchesAreSound(const TrianglePatches& p, std::size_t triangles) {
+  return listsAreSound(p.begin, p.triangles, p.count(), triangles) &&
+         listsAreSound(p.neighbourBegin, p.neighbours, p.count(), p.count()) && p.sums.size() == p.count() &&
+         (p.begin.empty() ? p.count() == 0 : p.triangles.size() == triangles);
 }
 
 /// Either absent or one entry per vertex and triangle of the surface.
@@ -56,7 +74,7 @@ bool linksAreSound(const TetMesh& mesh) {
   return (mesh.vertexTet.empty() || mesh.vertexTet.size() == vertices) &&
          allInRange(mesh.vertexTet, -1, mesh.tets.size()) &&
          (mesh.surfaceNeighbours.empty() || mesh.surfaceNeighbours.size() == triangles) &&
-         allInRange(mesh.surfaceNeighbours, 0, triangles);
+         allInRange(mesh.surfaceNeighbours, 0, triangles) && patchesAreSound(mesh.patches, triangles);
 }
 
 bool isSound(const TetMesh& mesh) {
@@ -64,7 +82,8 @@ bool isSound(const TetMesh& mesh) {
   return allInRange(mesh.tets, 0, mesh.nodes.size()) && allInRange(mesh.boundary, 0, mesh.nodes.size()) &&
          (mesh.neighbours.empty() || mesh.neighbours.size() == tets) &&
          allInRange(mesh.neighbours, -1, tets) &&
-         (mesh.insideFraction.empty() || mesh.insideFraction.size() == tets) && heldIsSound(mesh) &&
+         (mesh.insideFraction.empty() || mesh.insideFraction.size() == tets) &&
+         listsAreSound(mesh.heldBegin, mesh.held, tets, mesh.surface ? mesh.surface->triangles.size() : 0) &&
          linksAreSound(mesh);
 }
 
@@ -82,9 +101,18 @@ std::optional<TetMesh> loadValue(ArchiveReader& from, std::type_identity<TetMesh
   from.array(mesh.held);
   from.array(mesh.vertexTet);
   from.array(mesh.surfaceNeighbours);
+  TrianglePatches& patches = mesh.patches;
+  from.array(patches.begin);
+  from.array(patches.triangles);
+  from.array(patches.neighbourBegin);
+  from.array(patches.neighbours);
+  from.array(patches.regular);
+  from.array(patches.sums);
+  getBits(from, patches.origin);
   from.array(mesh.insideFraction);
   getBits(from, mesh.quality);
-  if (!from.ok() || !isSound(mesh)) loaded.reset();
+  if (!from.ok() || !isSound(mesh)) return std::nullopt;
+  mesh.patches.indexTriangles();
   return loaded;
 }
 

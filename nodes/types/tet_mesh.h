@@ -9,6 +9,7 @@
 #include "base/archive.h"
 #include "base/hash.h"
 #include "types/tri_mesh.h"
+#include "types/triangle_patches.h"
 #include "types/vec.h"
 
 namespace sherd {
@@ -22,7 +23,7 @@ struct TetQuality {
 
 struct TetMesh {
   static constexpr const char* typeName = "TetMesh";
-  static constexpr int archiveVersion = 2;
+  static constexpr int archiveVersion = 3;
 
   std::shared_ptr<const TriMesh> surface;  ///< lies strictly inside the union of the tetrahedra
   std::vector<Vec3> nodes;                 ///< m; every node belongs to a tetrahedron
@@ -33,10 +34,11 @@ struct TetMesh {
   /// Surface triangles that touch tetrahedron t: held[heldBegin[t]] … held[heldBegin[t + 1] − 1], ascending.
   /// Never misses one; may hold one that comes within rounding of the tetrahedron.
   std::vector<Index> heldBegin, held;
-  /// Per surface vertex the tetrahedron that it lies in, and per surface triangle the next one around the edge of
-  /// corners (i, i + 1): geometry/surface_links.h fills both.
+  /// Per surface vertex the tetrahedron that it lies in, and per surface triangle the next one around the
+  /// edge of corners (i, i + 1): geometry/surface_links.h fills both, and the patches.
   std::vector<Index> vertexTet;
   std::vector<Triangle> surfaceNeighbours;
+  TrianglePatches patches;
   std::vector<double> insideFraction;  ///< per tetrahedron, share of its volume inside the surface, in [0, 1]
   TetQuality quality;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "faults/program_process.h"
+#include "support/sanitizers.h"
 
 namespace sherd::faults {
 namespace {
@@ -132,7 +133,7 @@ Interrupts interruptAtRandomMoments(const Weave& weave, int rounds, std::uint64_
     process.signal(SIGINT);
     const Ended ended = process.wait();
     interrupts.seconds.push_back(secondsSince(start));
-    EXPECT_LT(interrupts.seconds.back(), 1) << when;
+    EXPECT_LT(interrupts.seconds.back(), test::kSlowdown) << when;
     const bool isDone = ended.out.find(R"("event":"done","ok":true)") != std::string::npos;
     EXPECT_EQ(ended.exitCode, isDone ? 0 : 130) << ended.out << ended.err << when;
     interrupts.cancelled += !isDone;
@@ -152,7 +153,7 @@ void interrupt(int rounds, const std::map<std::string, std::string>& more) {
   const ScratchDirectory scratch;
   const Weave weave(scratch, more);
   Interrupts interrupts = interruptAtRandomMoments(weave, rounds, 3);
-  EXPECT_LT(interrupts.median(), 0.1);
+  EXPECT_LT(interrupts.median(), 0.1 * test::kSlowdown);
   EXPECT_GT(interrupts.cancelled, rounds / 2);
   testing::Test::RecordProperty("median_ms", static_cast<int>(1000 * interrupts.median()));
 }
@@ -179,7 +180,7 @@ TEST(Interrupted, EndsAtOnceThoughAFailureHasStoppedTheRunAlready) {
   const auto start = std::chrono::steady_clock::now();
   process.signal(SIGINT);
   const Ended ended = process.wait(15);
-  EXPECT_LT(secondsSince(start), 1);
+  EXPECT_LT(secondsSince(start), test::kSlowdown);
   EXPECT_EQ(ended.exitCode, 130) << ended.err;
 }
 

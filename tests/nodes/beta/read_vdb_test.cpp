@@ -12,6 +12,7 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "support/sanitizers.h"
 #include "types/scalar_grid_vdb.h"
 
 namespace sherd {
@@ -89,6 +90,7 @@ TEST_F(ReadVdb, MissingFileDirectoryAndGarbage) {
 }
 
 TEST_F(ReadVdb, TruncatedFilesAreErrors) {
+  if (test::kAddressSanitizer) GTEST_SKIP() << "OpenVDB asks for terabytes, which ends the program here";
   const auto grid = makeGrid("beta", 1);
   fillLinear(*grid, 20);
   write({grid});

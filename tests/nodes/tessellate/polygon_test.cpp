@@ -38,14 +38,14 @@ std::vector<PlanarCorner> cornersOf(const std::vector<Vec2>& points) {
 
 TEST(Polygon, TriangleIsPassedThrough) {
   const auto c = cornersOf({Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)});
-  const auto t = triangulatePolygon(c, std::vector<Loop>{{0, 1, 2}});
+  const auto t = PolygonTriangulator().triangulate(c, std::vector<Loop>{{0, 1, 2}});
   ASSERT_EQ(t.triangles.size(), 1u);
   EXPECT_EQ(t.triangles[0], (Triangle{0, 1, 2}));
 }
 
 TEST(Polygon, SquareTakesTheBetterDiagonal) {
   const auto c = cornersOf({Vec2(0, 0), Vec2(2, 0.2), Vec2(2.2, 1), Vec2(0, 1)});
-  const auto t = triangulatePolygon(c, std::vector<Loop>{{0, 1, 2, 3}});
+  const auto t = PolygonTriangulator().triangulate(c, std::vector<Loop>{{0, 1, 2, 3}});
   EXPECT_EQ(t.triangles.size(), 2u);
   EXPECT_EQ(t.forced, 0);
   expectBoundary({{0, 1, 2, 3}}, t);
@@ -56,7 +56,7 @@ TEST(Polygon, CornersOnALineMakeNoFlatTriangles) {
   auto c = cornersOf({Vec2(0, 0), Vec2(1, 1e-17), Vec2(2, -1e-17), Vec2(3, 0), Vec2(1.5, 2)});
   for (std::size_t i = 0; i < 4; ++i) c[i].lines = 1;
   const std::vector<Loop> loops{{0, 1, 2, 3, 4}};
-  const auto t = triangulatePolygon(c, loops);
+  const auto t = PolygonTriangulator().triangulate(c, loops);
   EXPECT_EQ(t.forced, 0);
   expectBoundary(loops, t);
   for (const Triangle& f : t.triangles) EXPECT_GT(loopArea2(c, {f[0], f[1], f[2]}), 0.1);
@@ -82,7 +82,7 @@ TEST(Polygon, HolesAndIslands) {
     p.push_back(q);  // an island in the first hole
   expected += 0.16;
   const auto c = cornersOf(p);
-  const auto t = triangulatePolygon(c, loops);
+  const auto t = PolygonTriangulator().triangulate(c, loops);
   EXPECT_EQ(t.forced, 0);
   EXPECT_NEAR(area2(c, t), expected, 1e-9);
   expectBoundary(loops, t);
@@ -100,7 +100,7 @@ TEST(Polygon, RandomStarsAreCoveredOnce) {
       loop.push_back(i);
     }
     const auto c = cornersOf(p);
-    const auto t = triangulatePolygon(c, std::vector<Loop>{loop});
+    const auto t = PolygonTriangulator().triangulate(c, std::vector<Loop>{loop});
     EXPECT_EQ(t.forced, 0) << seed;
     EXPECT_EQ(t.triangles.size(), static_cast<std::size_t>(n) - 2);
     EXPECT_NEAR(area2(c, t), loopArea2(c, loop), 1e-12);
@@ -118,7 +118,7 @@ TEST(Polygon, NonsenseCoordinatesStillClose) {
       p.emplace_back(rng.uniform(), seed % 3 == 0 ? 0.0 : rng.uniform());
       loop.push_back(i);
     }
-    const auto t = triangulatePolygon(cornersOf(p), std::vector<Loop>{loop});
+    const auto t = PolygonTriangulator().triangulate(cornersOf(p), std::vector<Loop>{loop});
     EXPECT_EQ(t.triangles.size(), 10u);
     expectBoundary({loop}, t);
   }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "base/rng.h"
@@ -137,7 +139,8 @@ TEST(Tessellate, ConformingPiecesAreThoseOfTheCage) {
     ASSERT_TRUE(f.ok()) << f.error().text();
     expectPromises(*f);
     EXPECT_GE(f->pieces.size(), 6u);
-    EXPECT_NEAR(solidVolume(f->tets->surface->positions, f->tets->surface->triangles), u.quality.cageVolume, 1e-12);
+    EXPECT_NEAR(solidVolume(f->tets->surface->positions, f->tets->surface->triangles), u.quality.cageVolume,
+                1e-12);
   }
 }
 
@@ -145,8 +148,13 @@ TEST(Tessellate, OneCellIsTheUntouchedSurface) {
   const auto tets = families::cagedInBlock(families::sphereSurface(Vec3::Zero(), 1, 24, 12), 3);
   const Fragments f = breakAt(tets, {Vec3::Zero()});
   ASSERT_EQ(f.pieces.size(), 1u);
-  EXPECT_EQ(f.pieces[0].surface, tets->surface->triangles);
-  EXPECT_TRUE(f.pieces[0].crack.empty());
+  const Piece& piece = f.pieces[0];
+  for (std::size_t t = 0; t < piece.surface.size(); ++t)
+    EXPECT_EQ(piece.surface[t], tets->surface->triangles[at(piece.surfaceSource[t])]);
+  EXPECT_EQ(std::set<Index>(piece.surfaceSource.begin(), piece.surfaceSource.end()).size(),
+            tets->surface->triangles.size());
+  EXPECT_EQ(piece.surface.size(), tets->surface->triangles.size());
+  EXPECT_TRUE(piece.crack.empty());
   EXPECT_EQ(f.positions, tets->surface->positions);
   EXPECT_EQ(f.counts.cutTets, 0u);
 }

@@ -111,7 +111,8 @@ TYPED_TEST(Archive, TruncatedAndTooLongBytesAreRefused) {
     ArchiveReader from(std::string_view(cut.data(), cut.size()), parts);
     ASSERT_EQ(type.load(from), nullptr) << size << " of " << whole.size();
   }
-  ArchiveReader longer(whole + '\0', parts);
+  const std::string extended = whole + '\0';
+  ArchiveReader longer(extended, parts);
   EXPECT_EQ(type.load(longer), nullptr);
 }
 

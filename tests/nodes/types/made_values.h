@@ -40,6 +40,16 @@ inline TetMesh tetMesh() {
   mesh.surface = std::make_shared<const TriMesh>(triMesh());
   mesh.insideFraction[0] = -0.0;
   mesh.quality = {70, 110, 6, 5.5, kSmallest};
+  TrianglePatches& patches = mesh.patches;  // one with all
+  const std::size_t triangles = mesh.surface->triangles.size();
+  patches.begin = {0, static_cast<Index>(triangles)};
+  for (std::size_t t = 0; t < triangles; ++t) patches.triangles.push_back(static_cast<Index>(t));
+  patches.indexTriangles();
+  patches.neighbourBegin = {0, 1};
+  patches.neighbours = {0};
+  patches.regular = {1};
+  patches.sums = {{-0.0, {1, 2, 3}, {4, kSmallest, 6, 7, 8, 9}}};
+  patches.origin = Vec3(-0.0, 1, 2);
   return mesh;
 }
 

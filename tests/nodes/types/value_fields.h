@@ -45,8 +45,16 @@ auto of(Maybe<TetQuality> auto& v) {
   return std::tie(a, b, c, d, e);
 }
 auto of(Maybe<TetMesh> auto& v) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k] = v;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l] = v;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l);
+}
+auto of(Maybe<SolidSums> auto& v) {
+  auto& [a, b, c] = v;
+  return std::tie(a, b, c);
+}
+auto of(Maybe<TrianglePatches> auto& v) {
+  auto& [a, b, patchOf, d, e, f, g, h] = v;
+  return std::tie(a, b, d, e, f, g, h);  // patchOf says what a and b say
 }
 auto of(Maybe<Material> auto& v) {
   auto& [a, b, c] = v;
