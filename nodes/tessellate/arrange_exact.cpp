@@ -4,32 +4,14 @@
 #include "base/parallel.h"
 #include "geometry/copy_points.h"
 #include "tessellate/arrangement.h"
+#include "tessellate/bucket_sort.h"
 #include "tessellate/crossing_order.h"
-#include "tessellate/triangle_in_tet.h"
+#include "tessellate/tet_search.h"
 
 namespace sherd {
 namespace {
 
 constexpr std::size_t kBlock = 16;  ///< cut tetrahedra a task
-
-/// An end of a segment as found, named by what crosses what.
-struct FoundEnd {
-  Index a, b;     ///< of the surface edge, ascending; or the sheet edge and −1
-  Index through;  ///< the polygon; or the surface triangle
-  Index segment;  ///< 2 · segment + (0: from, 1: to)
-  bool fromFront;
-  SegmentEnd end;  ///< of that segment
-
-  bool names(const FoundEnd& o) const { return a == o.a && b == o.b && through == o.through; }
-  friend bool operator<(const FoundEnd& x, const FoundEnd& y) {
-    return std::tie(x.a, x.b, x.through, x.segment) < std::tie(y.a, y.b, y.through, y.segment);
-  }
-};
-
-struct FoundSegments {
-  std::vector<Segment> segments;
-  std::vector<FoundEnd> surfaceEnds, sheetEnds;  ///< segment counts from the block's first
-};
 
 class Arranger {
  public:
@@ -84,70 +66,10 @@ class Arranger {
     a_.surfaceLabel.assign(positions_.size(), -1);
     found_.resize((cutTets_ + kBlock - 1) / kBlock);
     parallelFor(exec_, cutTets_, kBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) searchTet(i, found_[begin / kBlock]);
+      TetSearch search(tets_, exact_, values_, a_.surfaceLabel);
+      for (std::size_t i = begin; i < end; ++i)
+        search.search(tetBegin_[i], tetBegin_[i + 1], found_[begin / kBlock]);
     });
-  }
-
-  void searchTet(std::size_t cut, FoundSegments& out) {
-    const Index first = tetBegin_[cut], last = tetBegin_[cut + 1], tet = sheets_.polygons[at(first)].tet;
-    const Index heldBegin = tets_.heldBegin[at(tet)], heldEnd = tets_.heldBegin[at(tet) + 1];
-    if (heldBegin == heldEnd) return;
-    const TetFrame frame(tets_, values_, tet);
-    std::vector<Index> ranks;
-    for (Index p = first; p < last; ++p)
-      ranks.insert(ranks.end(), exact_.ranks[at(p)].begin(), exact_.ranks[at(p)].end());
-    std::sort(ranks.begin(), ranks.end());
-    ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
-    std::vector<SheetPlane> planes;
-    for (Index p = first; p < last; ++p)
-      planes.emplace_back(frame, exact_.ranks[at(p)][0], exact_.ranks[at(p)][1]);
-    for (Index h = heldBegin; h < heldEnd; ++h) {
-      const Index s = tets_.held[at(h)];
-      const Triangle& corners = triangles_[at(s)];
-      const bool unlabelled = std::any_of(corners.begin(), corners.end(), [&](Index v) {
-        return tets_.vertexTet[at(v)] == tet && a_.surfaceLabel[at(v)] < 0;
-      });
-      const auto misses = [&](const SheetPlane& plane) {
-        const int sign = plane.sign(positions_[at(corners[0])]);
-        return sign != 0 && plane.sign(positions_[at(corners[1])]) == sign &&
-               plane.sign(positions_[at(corners[2])]) == sign;
-      };
-      if (!unlabelled && std::all_of(planes.begin(), planes.end(), misses)) continue;
-      TriangleInTet triangle(frame, corners, positions_);
-      labelCorners(triangle, corners, tet, ranks);
-      for (Index p = first; p < last; ++p)
-        if (!misses(planes[at(p - first)])) addSegment(triangle, s, p, out);
-    }
-  }
-
-  std::span<const SheetEdgeLine> linesOf(Index polygon) const {
-    const SheetPolygon& p = sheets_.polygons[at(polygon)];
-    return std::span(exact_.lines).subspan(at(p.first), at(p.count));
-  }
-
-  void addSegment(TriangleInTet& triangle, Index s, Index p, FoundSegments& out) const {
-    const auto [back, front] = exact_.ranks[at(p)];
-    SegmentEnd ends[2];
-    if (!triangle.meets(back, front, linesOf(p), ends[0], ends[1])) return;
-    for (const bool isTo : {false, true}) {
-      const SegmentEnd& end = ends[isTo];
-      FoundEnd found;
-      found.end = end;
-      found.segment = 2 * static_cast<Index>(out.segments.size()) + isTo;
-      if (end.side >= 0) {
-        const auto c = static_cast<std::size_t>(end.side), d = (c + 1) % 3;
-        const Index from = triangles_[at(s)][c], to = triangles_[at(s)][d];
-        found.a = std::min(from, to), found.b = std::max(from, to), found.through = p;
-        found.fromFront = triangle.signAtCorner(from < to ? c : d) < 0;
-        out.surfaceEnds.push_back(found);
-      } else {
-        // Along the polygon's border the surface's inside begins at the segment's start, and ends at its end.
-        found.a = sheets_.edgesOf(sheets_.polygons[at(p)])[at(end.slot)], found.b = -1, found.through = s;
-        found.fromFront = sheets_.forward(sheets_.polygons[at(p)], end.slot) != isTo;
-        out.sheetEnds.push_back(found);
-      }
-    }
-    out.segments.push_back({s, p, -1, -1});
   }
 
   /// From the heaviest corner, so that a point close to a corner keeps that corner's digits; within the
@@ -181,14 +103,16 @@ class Arranger {
     a_.surface = triangles_;
     a_.firstCrack = static_cast<Index>(positions_.size());
     a_.firstNew = a_.firstCrack + static_cast<Index>(sheets_.vertices.size());
-    takeEnds(surfaceEnds, a_.surfaceCrossings);
-    takeEnds(sheetEnds, a_.sheetCrossings);
+    takeEnds(surfaceEnds, positions_.size(), a_.surfaceCrossings);
+    takeEnds(sheetEnds, sheets_.edges.size(), a_.sheetCrossings);
     placeVertices();
     indexByEdge(a_.surfaceCrossings, a_.cutEdges.size());
     indexByEdge(a_.sheetCrossings, sheets_.edges.size());
-    std::sort(segments.begin(), segments.end(), [](const Segment& x, const Segment& y) {
-      return std::tie(x.surface, x.polygon) < std::tie(y.surface, y.polygon);
-    });
+    bucketSort(
+        segments, triangles_.size(), [](const Segment& s) { return s.surface; },
+        [](const Segment& x, const Segment& y) {
+          return std::tie(x.surface, x.polygon) < std::tie(y.surface, y.polygon);
+        });
   }
 
   /// Each crossing by the first of the segments that end there.
@@ -201,14 +125,15 @@ class Arranger {
         const auto& [surface, polygon, segmentEnd] = places_[i];
         const TetFrame frame(tets_, values_, sheets_.polygons[at(polygon)].tet);
         TriangleInTet triangle(frame, triangles_[at(surface)], positions_);
-        triangle.take(exact_.ranks[at(polygon)][0], exact_.ranks[at(polygon)][1], linesOf(polygon));
+        triangle.take(exact_.ranks[at(polygon)][0], exact_.ranks[at(polygon)][1], exact_.linesOf(polygon));
         a_.positions[at(a_.firstNew) + i] = placed(triangles_[at(surface)], triangle.weights(segmentEnd));
       }
     });
   }
 
-  void takeEnds(std::vector<FoundEnd>& ends, EdgeCrossings& out) {
-    std::sort(ends.begin(), ends.end());
+  void takeEnds(std::vector<FoundEnd>& ends, std::size_t keys, EdgeCrossings& out) {
+    bucketSort(
+        ends, keys, [](const FoundEnd& e) { return e.a; }, std::less<>());
     for (std::size_t i = 0; i < ends.size(); ++i) {
       const FoundEnd& end = ends[i];
       if (i == 0 || !end.names(ends[i - 1])) {
@@ -288,7 +213,7 @@ class Arranger {
     const auto [polygon, slot] = polygonAt(x.edge);
     const TetFrame frame(tets_, values_, sheets_.polygons[at(polygon)].tet);
     const auto [back, front] = exact_.ranks[at(polygon)];
-    const SheetEdgeLine& line = linesOf(polygon)[at(slot)];
+    const SheetEdgeLine& line = exact_.linesOf(polygon)[at(slot)];
     const AffineFunction border =
         line.face >= 0 ? TetFrame::cornerFunction(line.face) : frame.differenceFunction(line.third, back);
     std::array<std::array<Vec3, 3>, 2> triangles;
@@ -328,19 +253,6 @@ class Arranger {
         return inconsistentCut("a part of the surface lies in two cells");
     }
     return {};
-  }
-
-  /// The least site at a corner that lies in the tetrahedron, among those that share that. No other task
-  /// writes there.
-  void labelCorners(const TriangleInTet& triangle, const Triangle& corners, Index tet,
-                    std::span<const Index> ranks) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      if (tets_.vertexTet[at(corners[c])] != tet || a_.surfaceLabel[at(corners[c])] >= 0) continue;
-      Index best = ranks.front();
-      for (const Index r : ranks)
-        if (r != best && triangle.signOfDifference(c, r, best) < 0) best = r;
-      a_.surfaceLabel[at(corners[c])] = values_.site(best);
-    }
   }
 
   const TetMesh& tets_;

@@ -1,8 +1,8 @@
 #include "tessellate/envelope.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <unordered_map>
 
 #include "base/parallel.h"
 #include "geometry/approx.h"
@@ -22,14 +22,35 @@ struct VertexName {
   std::size_t dimension() const { return nodes[2] < 0 ? 1 : nodes[3] < 0 ? 2 : 3; }
 };
 
-struct VertexNameHash {
-  std::size_t operator()(const VertexName& n) const {
+/// Numbers names as they come.
+class VertexNumbers {
+ public:
+  /// `most`: names that will be asked for, at most.
+  explicit VertexNumbers(std::size_t most) : slots_(std::bit_ceil(2 * most + 8), -1) {}
+
+  Index numberOf(const VertexName& name) {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t slot = hash(name) & mask;
+    while (slots_[slot] >= 0 && !(names_[at(slots_[slot])] == name)) slot = (slot + 1) & mask;
+    if (slots_[slot] < 0) {
+      slots_[slot] = static_cast<Index>(names_.size());
+      names_.push_back(name);
+    }
+    return slots_[slot];
+  }
+  std::vector<VertexName> take() { return std::move(names_); }
+
+ private:
+  static std::size_t hash(const VertexName& n) {
     std::uint64_t h = 0;
     for (const Tetra* part : {&n.nodes, &n.ranks})
       for (const Index i : *part)
         h = (h ^ static_cast<std::uint32_t>(i)) * 0x9E3779B97F4A7C15ULL, h ^= h >> 32;
     return static_cast<std::size_t>(h);
   }
+
+  std::vector<VertexName> names_;
+  std::vector<Index> slots_;
 };
 
 /// What the polygons of a block of tetrahedra are made of.
@@ -69,17 +90,13 @@ Approx difference(const double* g, Index plus, Index minus) {
   return {d, 0x1p-53 * std::abs(d)};
 }
 
-/// The envelope in one tetrahedron.
+/// The envelope in one tetrahedron after another.
 class TetEnvelope {
  public:
-  TetEnvelope(const TetMesh& tets, const SiteValues& values, Index tet)
-      : tet_(tet), nodes_(tets.tets[at(tet)]) {
-    for (std::size_t i = 0; i < 4; ++i) g_[i] = values.at(nodes_[i]);
-    for (std::size_t i = 0; i < 4; ++i)
-      atBoundary_[i] = !tets.neighbours.empty() && tets.neighbours[at(tet)][i] < 0;
-  }
+  TetEnvelope(const TetMesh& tets, const SiteValues& values) : tets_(tets), values_(values) {}
 
-  void addPolygons(std::span<const Index> candidates, BlockPolygons& out) {
+  void addPolygons(Index tet, std::span<const Index> candidates, BlockPolygons& out) {
+    begin(tet);
     const std::size_t before = out.polygons.size();
     for (std::size_t a = 0; a < candidates.size(); ++a)
       for (std::size_t b = a + 1; b < candidates.size(); ++b) {
@@ -98,6 +115,21 @@ class TetEnvelope {
   /// i.
   using Line = Index;
   static bool isFace(Line l) { return l < 4; }
+
+  /// Where a corner is, as the nodes' weights, each off by no more than `error`; what the filters go by.
+  struct Corner {
+    std::array<double, 4> weight{};
+    double error = 0;
+  };
+
+  void begin(Index tet) {
+    tet_ = tet;
+    nodes_ = tets_.tets[at(tet)];
+    for (std::size_t i = 0; i < 4; ++i) {
+      g_[i] = values_.at(nodes_[i]);
+      atBoundary_[i] = !tets_.neighbours.empty() && tets_.neighbours[at(tet)][i] < 0;
+    }
+  }
 
   /// Where g_plus − g_minus is at a corner of the tetrahedron, with ties.
   int signAtNode(Index plus, Index minus, std::size_t node) const {
@@ -126,7 +158,47 @@ class TetEnvelope {
       lines_ = {a, b, c};
     else  // ad, bd, bc, ac
       lines_ = {c, a, d, b};
+    const std::size_t n = lines_.size();
+    corners_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) corners_[i] = cornerOnEdge(lines_[(i + n - 1) % n], lines_[i]);
     return true;
+  }
+
+  /// Where the plane meets the edge that two faces share.
+  Corner cornerOnEdge(Line one, Line other) const {
+    std::array<std::size_t, 2> ends{};
+    for (std::size_t i = 0, k = 0; i < 4; ++i)
+      if (one != static_cast<Line>(i) && other != static_cast<Line>(i)) ends[k++] = i;
+    const double from = g_[ends[0]][front_] - g_[ends[0]][back_],
+                 to = g_[ends[1]][front_] - g_[ends[1]][back_];
+    Corner corner;
+    corner.error = 0x1p-50;  // differences off by a unit each, and three roundings
+    const double t = from != to ? from / (from - to) : 0.5;
+    if (from == to) corner.error = 1;  // both 0: it may be anywhere between
+    corner.weight[ends[0]] = 1 - t;
+    corner.weight[ends[1]] = t;
+    return corner;
+  }
+
+  /// Between corners where a function is `from` > 0 and `to` < 0, each off by no more than `error`.
+  static Corner between(const Corner& a, const Corner& b, double from, double to, double error) {
+    from = std::max(from, 0.0), to = std::min(to, 0.0);
+    const double length = from - to;
+    Corner corner;
+    if (!(length > 8 * error)) {
+      corner.error = 1;
+      for (std::size_t i = 0; i < 4; ++i) corner.weight[i] = 0.5 * (a.weight[i] + b.weight[i]);
+      return corner;
+    }
+    const double t = from / length;
+    double apart = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      apart = std::max(apart, std::abs(b.weight[i] - a.weight[i]));
+      corner.weight[i] = a.weight[i] + t * (b.weight[i] - a.weight[i]);
+    }
+    const double inherited = std::max(a.error, b.error);
+    corner.error = inherited + (apart + 2 * inherited) * (4 * error / length) + 0x1p-50;
+    return corner;
   }
 
   /// det and what it would be with all its products positive, of the differences' rounded values.
@@ -201,13 +273,40 @@ class TetEnvelope {
     return sign * determinantSign(all, std::span(pairs).first(functions + 1));
   }
 
+  /// g_third − g_back at all corners, and how far off each may be.
+  void evaluate(Index third) {
+    std::array<double, 4> difference;
+    double sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      difference[i] = g_[i][third] - g_[i][back_];
+      sum += std::abs(difference[i]);
+    }
+    const std::size_t n = lines_.size();
+    valueAt_.resize(n);
+    errorAt_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Corner& c = corners_[i];
+      double value = 0, size = 0;
+      for (std::size_t k = 0; k < 4; ++k) {
+        value += c.weight[k] * difference[k];
+        size += std::abs(c.weight[k] * difference[k]);
+      }
+      valueAt_[i] = value;
+      errorAt_[i] = 1.01 * (8 * 0x1p-53 * size + c.error * sum) + 0x1p-1000;
+    }
+  }
+
   /// Keeps where g_third ≥ g_back; false where nothing is left.
   bool clipBy(Index third) {
+    evaluate(third);
     const std::size_t n = lines_.size();
     signs_.resize(n);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      signs_[i] = signAtCorner(lines_[(i + n - 1) % n], lines_[i], third);
+      if (std::abs(valueAt_[i]) > errorAt_[i])
+        signs_[i] = valueAt_[i] > 0 ? 1 : -1;
+      else
+        signs_[i] = signAtCorner(lines_[(i + n - 1) % n], lines_[i], third);
       kept += signs_[i] > 0;
     }
     if (kept == n) return true;
@@ -215,13 +314,23 @@ class TetEnvelope {
     // The kept corners follow one another; begin with the first of them.
     std::size_t first = 0;
     while (!(signs_[first] > 0 && signs_[(first + n - 1) % n] < 0)) ++first;
-    clipped_.clear();
-    for (std::size_t i = 0; i < kept; ++i) clipped_.push_back(lines_[(first + i) % n]);
-    clipped_.push_back(third + 4);
-    clipped_.push_back(lines_[(first + n - 1) % n]);
-    // Corner 0 of the result has to stand between the line that leads to it and the first kept one.
-    std::rotate(clipped_.begin(), clipped_.end() - 1, clipped_.end());
-    lines_.swap(clipped_);
+    const std::size_t last = (first + kept - 1) % n, before = (first + n - 1) % n, after = (last + 1) % n;
+    const auto corner = [&](std::size_t in, std::size_t out) {
+      return between(corners_[in], corners_[out], valueAt_[in], valueAt_[out],
+                     std::max(errorAt_[in], errorAt_[out]));
+    };
+    // The new line leads from where the kept corners end to where they begin.
+    clippedLines_.clear(), clippedCorners_.clear();
+    clippedLines_.push_back(lines_[before]);
+    clippedCorners_.push_back(corner(first, before));
+    for (std::size_t i = 0; i < kept; ++i) {
+      clippedLines_.push_back(lines_[(first + i) % n]);
+      clippedCorners_.push_back(corners_[(first + i) % n]);
+    }
+    clippedLines_.push_back(third + 4);
+    clippedCorners_.push_back(corner(last, after));
+    lines_.swap(clippedLines_);
+    corners_.swap(clippedCorners_);
     return true;
   }
 
@@ -252,12 +361,16 @@ class TetEnvelope {
     return name;
   }
 
-  Index tet_;
-  Tetra nodes_;
+  const TetMesh& tets_;
+  const SiteValues& values_;
+  Index tet_ = -1;
+  Tetra nodes_{};
   std::array<const double*, 4> g_{};
   std::array<bool, 4> atBoundary_{};
   Index back_ = -1, front_ = -1;
-  std::vector<Line> lines_, clipped_;
+  std::vector<Line> lines_, clippedLines_;
+  std::vector<Corner> corners_, clippedCorners_;
+  std::vector<double> valueAt_, errorAt_;
   std::vector<int> signs_;
 };
 
@@ -341,11 +454,12 @@ std::vector<BlockPolygons> polygonsInBlocks(const TetMesh& tets, const SiteValue
   std::vector<BlockPolygons> blocks((n + kBlock - 1) / kBlock);
   parallelFor(exec, n, kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<Index> candidates;
+    TetEnvelope envelope(tets, values);
     for (std::size_t t = begin; t < end; ++t) {
       if (liesOutside(tets, t)) continue;
       values.candidates(tets.tets[t], candidates);
       if (candidates.size() > 1)
-        TetEnvelope(tets, values, static_cast<Index>(t)).addPolygons(candidates, blocks[begin / kBlock]);
+        envelope.addPolygons(static_cast<Index>(t), candidates, blocks[begin / kBlock]);
     }
   });
   return blocks;
@@ -359,9 +473,7 @@ ExactSheets exactSheets(const TetMesh& tets, const SiteValues& values, const Exe
   Sheets& sheets = result.sheets;
   std::size_t corners = 0;
   for (const BlockPolygons& block : blocks) corners += block.corners.size();
-  std::unordered_map<VertexName, Index, VertexNameHash> known;
-  known.reserve(corners / 3);
-  std::vector<VertexName> names;
+  VertexNumbers numbers(corners);
   for (const BlockPolygons& block : blocks) {
     Index first = static_cast<Index>(sheets.corners.size());
     for (const BlockPolygons::Polygon& p : block.polygons) {
@@ -370,14 +482,15 @@ ExactSheets exactSheets(const TetMesh& tets, const SiteValues& values, const Exe
       first += p.count;
     }
     for (std::size_t c = 0; c < block.corners.size(); ++c) {
-      const auto [found, isNew] = known.emplace(block.corners[c], static_cast<Index>(names.size()));
-      if (isNew) names.push_back(block.corners[c]), sheets.onCage.push_back(0);
-      sheets.corners.push_back(found->second);
-      sheets.onCage[at(found->second)] |= block.onCage[c];
+      const Index vertex = numbers.numberOf(block.corners[c]);
+      sheets.corners.push_back(vertex);
+      if (at(vertex) == sheets.onCage.size()) sheets.onCage.push_back(0);
+      sheets.onCage[at(vertex)] |= block.onCage[c];
     }
     result.lines.insert(result.lines.end(), block.lines.begin(), block.lines.end());
     sheets.cutTets += block.cutTets;
   }
+  const std::vector<VertexName> names = numbers.take();
   sheets.vertices.resize(names.size());
   sheets.simplexOf.reserve(names.size());
   for (const VertexName& name : names) sheets.simplexOf.push_back(name.nodes);

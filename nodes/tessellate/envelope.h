@@ -29,6 +29,11 @@ struct ExactSheets {
   Sheets sheets;
   std::vector<std::array<Index, 2>> ranks;  ///< per polygon: back and front by rank, ascending
   std::vector<SheetEdgeLine> lines;         ///< per corner: of the edge that begins there
+
+  std::span<const SheetEdgeLine> linesOf(Index polygon) const {
+    const SheetPolygon& p = sheets.polygons[at(polygon)];
+    return std::span(lines).subspan(at(p.first), at(p.count));
+  }
 };
 
 /// All predicates are exact in the doubles of `values` (filtered, then in rational numbers), with its ties;

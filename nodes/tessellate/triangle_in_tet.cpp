@@ -14,34 +14,50 @@ constexpr double kDoubleWillDo = 1e-15, kExtendedWillDo = 2e-12;
 
 using Wide = long double;
 
-Wide wideCoordinate(const TetFrame& frame, std::size_t i, const Vec3& point) {
-  const auto& face = kTetraFace[i];
-  std::array<std::array<Wide, 3>, 3> d;
-  const Vec3* ends[] = {&frame.corners[static_cast<std::size_t>(face[2])],
-                        &frame.corners[static_cast<std::size_t>(face[1])], &point};
-  for (std::size_t r = 0; r < 3; ++r)
-    for (std::size_t k = 0; k < 3; ++k)
-      d[r][k] = static_cast<Wide>((*ends[r])[static_cast<Eigen::Index>(k)]) -
-                static_cast<Wide>(frame.base[i][static_cast<Eigen::Index>(k)]);
-  Wide sum = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
-    sum += (d[0][l] * d[1][m] - d[0][m] * d[1][l]) * d[2][k];
+/// An affine function in extended precision.
+class WidePlane {
+ public:
+  /// Barycentric coordinate `corner` of the tetrahedron, times six volumes.
+  WidePlane(const TetFrame& frame, int corner) : base_(frame.base[static_cast<std::size_t>(corner)]) {
+    gradient_ = inward(frame, static_cast<std::size_t>(corner));
   }
-  return sum;
-}
+  /// g_plus − g_minus, times six volumes.
+  WidePlane(const TetFrame& frame, Index plus, Index minus) : base_(frame.corners[0]) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Wide d = static_cast<Wide>(frame.g[i][plus]) - static_cast<Wide>(frame.g[i][minus]);
+      const std::array<Wide, 3> own = inward(frame, i);
+      for (std::size_t k = 0; k < 3; ++k) gradient_[k] += d * own[k];
+      if (i == 0) atBase_ = d * along(own, base_, frame.base[0]);
+    }
+  }
 
-std::array<Wide, 4> wideCoordinates(const TetFrame& frame, const Vec3& point) {
-  return {wideCoordinate(frame, 0, point), wideCoordinate(frame, 1, point), wideCoordinate(frame, 2, point),
-          wideCoordinate(frame, 3, point)};
-}
+  Wide at(const Vec3& point) const { return atBase_ + along(gradient_, point, base_); }
 
-Wide wideDifference(const TetFrame& frame, const std::array<Wide, 4>& coordinates, Index plus, Index minus) {
-  Wide sum = 0;
-  for (std::size_t i = 0; i < 4; ++i)
-    sum += coordinates[i] * (static_cast<Wide>(frame.g[i][plus]) - static_cast<Wide>(frame.g[i][minus]));
-  return sum;
-}
+ private:
+  static Wide along(const std::array<Wide, 3>& v, const Vec3& point, const Vec3& base) {
+    Wide sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) sum += v[k] * difference(point, base, k);
+    return sum;
+  }
+  static Wide difference(const Vec3& p, const Vec3& q, std::size_t k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    return static_cast<Wide>(p[i]) - static_cast<Wide>(q[i]);
+  }
+  static std::array<Wide, 3> inward(const TetFrame& frame, std::size_t corner) {
+    const auto& face = kTetraFace[corner];
+    const Vec3 &p = frame.corners[static_cast<std::size_t>(face[2])],
+               &q = frame.corners[static_cast<std::size_t>(face[1])], &base = frame.base[corner];
+    std::array<Wide, 3> u, v, cross;
+    for (std::size_t k = 0; k < 3; ++k) u[k] = difference(p, base, k), v[k] = difference(q, base, k);
+    for (std::size_t k = 0; k < 3; ++k)
+      cross[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+    return cross;
+  }
+
+  Vec3 base_;
+  std::array<Wide, 3> gradient_{};
+  Wide atBase_ = 0;
+};
 
 }  // namespace
 
@@ -178,6 +194,17 @@ void TriangleInTet::take(Index back, Index front, std::span<const SheetEdgeLine>
   for (std::size_t c = 0; c < 3; ++c) sheet_[c] = frame_.difference(coordinates_[c], front, back);
 }
 
+namespace {
+
+/// Where on the way from a to b, values of different signs, a function vanishes: in [0, 1].
+Approx crossing(const Approx& a, const Approx& b) {
+  const double from = std::abs(a.value), to = std::abs(b.value), error = std::max(a.error, b.error);
+  if (!(from + to > 8 * error)) return {0.5, 0.5};
+  return {from / (from + to), 4 * error / (from + to) + 0x1p-50};
+}
+
+}  // namespace
+
 bool TriangleInTet::meets(Index back, Index front, std::span<const SheetEdgeLine> lines, SegmentEnd& from,
                           SegmentEnd& to) {
   take(back, front, lines);
@@ -189,16 +216,29 @@ bool TriangleInTet::meets(Index back, Index front, std::span<const SheetEdgeLine
   }
   if (sum == 3 || sum == -3) return false;
   // The corner that is alone on its side, with the chord that has the back cell (positive) on its left.
-  int alone = 0;
-  while (signs_[static_cast<std::size_t>(alone)] == (sum > 0 ? 1 : -1)) ++alone;
-  from = {alone, -1}, to = {(alone + 2) % 3, -1};
-  if (signs_[static_cast<std::size_t>(alone)] < 0) std::swap(from, to);
+  std::size_t alone = 0;
+  while (signs_[alone] == (sum > 0 ? 1 : -1)) ++alone;
+  const std::size_t next = (alone + 1) % 3, last = (alone + 2) % 3;
+  from = {static_cast<int>(alone), -1}, to = {static_cast<int>(last), -1};
+  const bool turned = signs_[alone] < 0;
+  if (turned) std::swap(from, to);
+  const Approx toNext = crossing(sheet_[alone], sheet_[next]), toLast = crossing(sheet_[alone], sheet_[last]);
+  Approx begin = 0, end = 1;  // of what is left of the chord
   for (std::size_t slot = 0; slot < lines.size(); ++slot) {
     const int function = static_cast<int>(slot);
-    const int atFrom = signAtEnd(from, function), atTo = signAtEnd(to, function);
+    const Approx own = value(function, alone);
+    Approx first = own + toNext * (value(function, next) - own),
+           second = own + toLast * (value(function, last) - own);
+    if (turned) std::swap(first, second);
+    const Approx slope = second - first;
+    const auto signAt = [&](const Approx& place, const SegmentEnd& where) {
+      const int sign = (first + place * slope).sign();
+      return sign != 0 ? sign : signAtEnd(where, function);
+    };
+    const int atFrom = signAt(begin, from), atTo = signAt(end, to);
     if (atFrom < 0 && atTo < 0) return false;
-    if (atFrom < 0) from = {-1, static_cast<Index>(slot)};
-    if (atTo < 0) to = {-1, static_cast<Index>(slot)};
+    if (atFrom < 0) from = {-1, static_cast<Index>(slot)}, begin = crossing(first, second);
+    if (atTo < 0) to = {-1, static_cast<Index>(slot)}, end = crossing(first, second);
   }
   return true;
 }
@@ -228,10 +268,14 @@ std::array<double, 3> TriangleInTet::weights(const SegmentEnd& end) const {
   if (error <= kDoubleWillDo * std::abs(sum.value)) {
     for (std::size_t i = 0; i < n; ++i) result[corners[i]] = rough[i].value / sum.value;
   } else if (error <= kExtendedWillDo * std::abs(sum.value)) {
-    std::array<std::array<Wide, 4>, 3> wide{};
-    for (std::size_t i = 0; i < n; ++i) wide[corners[i]] = wideCoordinates(frame_, vertices_[corners[i]]);
-    const auto fine = minors([&](std::size_t c) { return wideDifference(frame_, wide[c], front_, back_); },
-                             [&](std::size_t c) { return wideValue(own, wide[c]); });
+    const WidePlane sheet(frame_, front_, back_);
+    const auto line = [&] {
+      if (onSide) return sheet;
+      const SheetEdgeLine& l = lines_[static_cast<std::size_t>(own)];
+      return l.face >= 0 ? WidePlane(frame_, l.face) : WidePlane(frame_, l.third, back_);
+    }();
+    const auto fine = minors([&](std::size_t c) { return sheet.at(vertices_[c]); },
+                             [&](std::size_t c) { return line.at(vertices_[c]); });
     const Wide whole = fine[0] + fine[1] + fine[2];
     for (std::size_t i = 0; i < n; ++i) result[corners[i]] = static_cast<double>(fine[i] / whole);
   } else {
@@ -244,12 +288,6 @@ std::array<double, 3> TriangleInTet::weights(const SegmentEnd& end) const {
     for (std::size_t i = 0; i < n; ++i) result[corners[i]] = exact[i];
   }
   return result;
-}
-
-long double TriangleInTet::wideValue(int function, const std::array<long double, 4>& coordinates) const {
-  const SheetEdgeLine& line = lines_[static_cast<std::size_t>(function)];
-  if (line.face >= 0) return coordinates[static_cast<std::size_t>(line.face)];
-  return wideDifference(frame_, coordinates, line.third, back_);
 }
 
 }  // namespace sherd

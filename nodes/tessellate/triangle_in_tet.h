@@ -1,6 +1,7 @@
 // One surface triangle against the sheet polygons of one tetrahedron.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -35,10 +36,17 @@ struct SheetPlane {
   double offset = 0, error = 0, errorAtBase = 0;
 
   SheetPlane(const TetFrame& frame, Index back, Index front);
-  /// +1 or −1 where the sign at a point is certain, else 0.
-  int sign(const Vec3& point) const {
+  Approx value(const Vec3& point) const {
     const Vec3 d = point - base;
-    return Approx(normal.dot(d) + offset, error * d.cwiseAbs().sum() + errorAtBase).sign();
+    return {normal.dot(d) + offset, error * d.cwiseAbs().sum() + errorAtBase};
+  }
+  /// Do the points certainly lie on one side?
+  bool misses(const Vec3& a, const Vec3& b, const Vec3& c) const {
+    const Vec3 p = a - base, q = b - base, r = c - base;
+    const double x = normal.dot(p) + offset, y = normal.dot(q) + offset, z = normal.dot(r) + offset;
+    const double reach = std::max({p.cwiseAbs().sum(), q.cwiseAbs().sum(), r.cwiseAbs().sum()});
+    const double bound = error * reach + errorAtBase;
+    return std::min({x, y, z}) > bound || std::max({x, y, z}) < -bound;
   }
 };
 
@@ -59,10 +67,6 @@ class TriangleInTet {
   /// As meets() does first: takes this polygon for what follows.
   void take(Index back, Index front, std::span<const SheetEdgeLine> lines);
 
-  /// Sign of g_plus − g_minus at a corner, with ties.
-  int signOfDifference(std::size_t corner, Index plus, Index minus) const {
-    return frame_.sign(vertices_[corner], coordinates_[corner], plus, minus);
-  }
   /// Sign of g_front − g_back of the last polygon at a corner.
   int signAtCorner(std::size_t corner) const { return signs_[corner]; }
   /// Weights of the corners in an end of the last polygon's segment.
@@ -72,7 +76,6 @@ class TriangleInTet {
   static constexpr int kSheet = -1;  ///< the function g_front − g_back; from 0 on an edge line's
 
   Approx value(int function, std::size_t corner) const;
-  long double wideValue(int function, const std::array<long double, 4>& coordinates) const;
   AffineFunction affine(int function) const;
   int determinantSign(std::span<const std::size_t> corners, std::span<const int> functions) const;
   int signAtEnd(const SegmentEnd& end, int function) const;
