@@ -120,13 +120,15 @@ class Arranger {
     a_.positions.resize(at(a_.firstNew) + places_.size());
     copyPoints(positions_, a_.positions.data());
     copyPoints(sheets_.vertices, a_.positions.data() + a_.firstCrack);
+    const double tolerance = 0x1p-52 * boxOf(tets_.nodes).diagonal();
     parallelFor(exec_, places_.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const auto& [surface, polygon, segmentEnd] = places_[i];
         const TetFrame frame(tets_, values_, sheets_.polygons[at(polygon)].tet);
         TriangleInTet triangle(frame, triangles_[at(surface)], positions_);
         triangle.take(exact_.ranks[at(polygon)][0], exact_.ranks[at(polygon)][1], exact_.linesOf(polygon));
-        a_.positions[at(a_.firstNew) + i] = placed(triangles_[at(surface)], triangle.weights(segmentEnd));
+        a_.positions[at(a_.firstNew) + i] =
+            placed(triangles_[at(surface)], triangle.weights(segmentEnd, tolerance));
       }
     });
   }
@@ -150,21 +152,29 @@ class Arranger {
     }
   }
 
-  /// Which triangles are cut, and by which of their sides.
+  /// Which triangles are cut, and by which of their sides: those on which a segment ends.
   void nameSurfaceEdges() {
-    for (const Segment& s : a_.segments)
-      if (a_.cutTriangles.empty() || a_.cutTriangles.back() != s.surface)
+    for (const Segment& s : a_.segments) {
+      if (a_.cutTriangles.empty() || a_.cutTriangles.back() != s.surface) {
         a_.cutTriangles.push_back(s.surface);
-    a_.edgesOfCut.resize(a_.cutTriangles.size());
-    for (std::size_t i = 0; i < a_.cutTriangles.size(); ++i)
-      for (std::size_t c = 0; c < 3; ++c) {
-        const Triangle& t = triangles_[at(a_.cutTriangles[i])];
-        const std::array<Index, 2> ends{std::min(t[c], t[(c + 1) % 3]), std::max(t[c], t[(c + 1) % 3])};
-        const auto found = std::lower_bound(a_.cutEdges.begin(), a_.cutEdges.end(), ends);
-        a_.edgesOfCut[i][c] = found != a_.cutEdges.end() && *found == ends
-                                  ? static_cast<Index>(found - a_.cutEdges.begin())
-                                  : -1;
+        a_.edgesOfCut.push_back({-1, -1, -1});
       }
+      for (const Index end : {s.from, s.to}) {
+        const std::size_t crossing =
+            at(end - a_.firstNew);  // vertices are numbered as the crossings are listed
+        if (crossing >= a_.surfaceCrossings.list.size()) continue;
+        const Index edge = a_.surfaceCrossings.list[crossing].edge;
+        a_.edgesOfCut.back()[sideOf(triangles_[at(s.surface)], a_.cutEdges[at(edge)])] = edge;
+      }
+    }
+  }
+
+  /// Which side of the triangle runs between these vertices.
+  static std::size_t sideOf(const Triangle& t, const std::array<Index, 2>& ends) {
+    std::size_t side = 0;
+    while (std::min(t[side], t[(side + 1) % 3]) != ends[0] || std::max(t[side], t[(side + 1) % 3]) != ends[1])
+      ++side;
+    return side;
   }
 
   std::array<Vec3, 4> cornersOf(Index tet) const {

@@ -20,10 +20,11 @@ CellParts::CellParts(const TetMesh& tets, const Arrangement& arrangement, const 
   std::vector<Side> sides;
   joinUncut(isCut, sides);
   if (exec.cancelled()) return;
-  addBorders(sides);
+  addSkinBorders(sides);
+  joinSheets(sides);
   joinSides(sides);
   if (exec.cancelled()) return;
-  sumUp();
+  sumUp(isCut);
 }
 
 std::size_t CellParts::triangleCount(std::size_t part) const {
@@ -40,7 +41,7 @@ void CellParts::splitPatches(std::span<const unsigned char> isCut) {
   partOf_ = std::make_unique_for_overwrite<Index[]>(arrangement_.surface.size());
   loose_ = std::make_unique_for_overwrite<Index[]>(arrangement_.surface.size());
   partBegin_.assign(n + 1, 0);
-  parallelFor(exec_, n, 256, [&](std::size_t begin, std::size_t end) {
+  parallelFor(exec_, n, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const auto triangles = patches.trianglesOf(p);
       whole_[p] = patches.regular[p] &&
@@ -101,59 +102,78 @@ void CellParts::nameCells() {
 
 /// Uncut triangles that are neighbours lie in one cell; those beside a cut one meet its parts over the edge.
 void CellParts::joinUncut(std::span<const unsigned char> isCut, std::vector<Side>& sides) {
-  const TrianglePatches& patches = tets_.patches;
-  const auto addSide = [&](std::size_t part, Index t, std::size_t side) {
-    const Triangle& corners = arrangement_.surface[at(t)];
-    const auto [low, high] = std::minmax(corners[side], corners[(side + 1) % 3]);
-    sides.push_back({low, high, cell_[part], static_cast<Index>(part)});
-  };
-  const auto look = [&](std::size_t part, Index t, std::size_t side) {
-    const Index next = tets_.surfaceNeighbours[at(t)][side];
-    if (isCut[at(next)])
-      addSide(part, t, side);
-    else
-      connected_.join(part, partOfTriangle(next));
-  };
-  for (std::size_t p = 0; p < patches.count(); ++p) {
-    const std::size_t first = at(partBegin_[p]), last = at(partBegin_[p + 1]);
-    if (whole_[p]) {  // its links to patches that are not are looked at from there
-      for (const Index q : patches.neighboursOf(p))
-        if (at(q) > p && whole_[at(q)]) connected_.join(first, at(partBegin_[at(q)]));
-      continue;
-    }
-    for (std::size_t part = first; part < last; ++part)
-      for (const Index t : uncut_[part])
-        for (std::size_t side = 0; side < 3; ++side) look(part, t, side);
-    for (const Index t : patches.trianglesOf(p)) {
-      if (!isCut[at(t)]) continue;
-      for (std::size_t side = 0; side < 3; ++side) {
-        const Index next = tets_.surfaceNeighbours[at(t)][side];
-        if (!isCut[at(next)] && whole_[at(patches.patchOf[at(next)])]) addSide(partOfTriangle(next), t, side);
-      }
-    }
+  constexpr std::size_t block = 64;
+  const std::size_t n = whole_.size();
+  std::vector<PatchLinks> links((n + block - 1) / block);
+  parallelFor(exec_, n, block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p)
+      if (!whole_[p]) linkPatch(p, isCut, links[begin / block]);
+  });
+  for (std::size_t p = 0; p < n; ++p) {
+    if (!whole_[p]) continue;  // its links to others were looked at from there
+    for (const Index q : tets_.patches.neighboursOf(p))
+      if (at(q) > p && whole_[at(q)]) connected_.join(at(partBegin_[p]), at(partBegin_[at(q)]));
+  }
+  for (const PatchLinks& l : links) {
+    for (const auto& [one, other] : l.joined) connected_.join(at(one), at(other));
+    sides.insert(sides.end(), l.sides.begin(), l.sides.end());
   }
 }
 
-void CellParts::addBorders(std::vector<Side>& sides) const {
-  const std::size_t uncut = sides.size(), skin = uncut + meshes_.skin.border.size();
-  sides.resize(skin + 2 * meshes_.sheet.border.size());
-  const auto fill = [&](const auto& mesh, std::size_t k, auto add) {
-    std::size_t slot = at(mesh.firstBorder[k]);
-    for (const auto& [from, to] : mesh.borderOf(k)) add(slot++, std::min(from, to), std::max(from, to));
+void CellParts::linkPatch(std::size_t patch, std::span<const unsigned char> isCut, PatchLinks& links) const {
+  const TrianglePatches& patches = tets_.patches;
+  for (const Index t : patches.trianglesOf(patch))
+    for (std::size_t side = 0; side < 3; ++side) {
+      const Index next = tets_.surfaceNeighbours[at(t)][side];
+      const std::size_t beyond = at(patches.patchOf[at(next)]);
+      Index owner = -1;  // the uncut one of a cut and an uncut triangle
+      if (isCut[at(t)] && !isCut[at(next)] && whole_[beyond])
+        owner = next;
+      else if (!isCut[at(t)] && isCut[at(next)])
+        owner = t;
+      else if (!isCut[at(t)] && beyond != patch)
+        links.joined.push_back(
+            {static_cast<Index>(partOfTriangle(t)), static_cast<Index>(partOfTriangle(next))});
+      if (owner < 0) continue;
+      const auto part = static_cast<Index>(partOfTriangle(owner));
+      const Triangle& corners = arrangement_.surface[at(t)];
+      const auto [low, high] = std::minmax(corners[side], corners[(side + 1) % 3]);
+      links.sides.push_back({low, high, cell_[at(part)], part});
+    }
+}
+
+void CellParts::addSkinBorders(std::vector<Side>& sides) const {
+  sides.reserve(sides.size() + meshes_.skin.border.size());
+  for (std::size_t k = 0; k < meshes_.skin.parts(); ++k)
+    for (const BorderEdge& e : meshes_.skin.borderOf(k))
+      sides.push_back({std::min(e.from, e.to), std::max(e.from, e.to), cell_[firstSkin_ + k],
+                       static_cast<Index>(firstSkin_ + k)});
+}
+
+/// Around a whole edge mostly two or three cells meet, each in two parts: the first is kept until the second
+/// comes. Other edges, and cells beyond the third, are left to joinSides.
+void CellParts::joinSheets(std::vector<Side>& sides) {
+  struct Waiting {
+    Index cell = -1, part = -1;
   };
-  parallelFor(exec_, meshes_.skin.parts(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k)
-      fill(meshes_.skin, k, [&](std::size_t slot, Index low, Index high) {
-        sides[uncut + slot] = {low, high, cell_[firstSkin_ + k], static_cast<Index>(firstSkin_ + k)};
-      });
-  });
-  parallelFor(exec_, meshes_.sheet.parts(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k)
-      fill(meshes_.sheet, k, [&](std::size_t slot, Index low, Index high) {
-        for (std::size_t part = firstSheet_ + 2 * k; part < firstSheet_ + 2 * k + 2; ++part)
-          sides[skin + 2 * slot + part % 2] = {low, high, cell_[part], static_cast<Index>(part)};
-      });
-  });
+  Index edges = 0;
+  for (const BorderEdge& e : meshes_.sheet.border) edges = std::max(edges, e.whole + 1);
+  std::vector<std::array<Waiting, 3>> around(at(edges));
+  const auto meet = [&](const BorderEdge& e, std::size_t part) {
+    if (e.whole >= 0)
+      for (Waiting& w : around[at(e.whole)]) {
+        if (w.cell < 0) w = {cell_[part], static_cast<Index>(part)};
+        if (w.cell != cell_[part]) continue;
+        connected_.join(at(w.part), part);
+        return;
+      }
+    sides.push_back({std::min(e.from, e.to), std::max(e.from, e.to), cell_[part], static_cast<Index>(part)});
+  };
+  for (std::size_t k = 0; k < meshes_.sheet.parts(); ++k)
+    for (const BorderEdge& e : meshes_.sheet.borderOf(k)) {
+      meet(e, firstSheet_ + 2 * k);
+      meet(e, firstSheet_ + 2 * k + 1);
+    }
 }
 
 /// Joins the parts with a side in common, found by hashing the edges.
@@ -176,31 +196,49 @@ void CellParts::joinSides(std::span<const Side> sides) {
           connected_.join(at(sorted[at(i)].part), at(sorted[at(k)].part));
 }
 
-void CellParts::sumUp() {
-  const std::vector<Vec3>& positions = arrangement_.positions;
-  const Vec3& origin = tets_.patches.origin;
+void CellParts::sumUp(std::span<const unsigned char> isCut) {
   sums_.resize(size());
-  const auto sumOf = [&](std::size_t part) {
-    SolidSums sums;
-    forTriangles(part, [&](const Triangle& t) {
-      sums.add(positions[at(t[0])] - origin, positions[at(t[1])] - origin, positions[at(t[2])] - origin);
-    });
-    return sums;
-  };
-  parallelFor(exec_, tets_.patches.count(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p)
-      for (std::size_t part = at(partBegin_[p]); part < at(partBegin_[p + 1]); ++part)
-        sums_[part] = whole_[p] ? tets_.patches.sums[p] : sumOf(part);
+  parallelFor(exec_, whole_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) sumPatch(p, isCut);
   });
-  parallelFor(exec_, meshes_.skin.parts(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t part = firstSkin_ + begin; part < firstSkin_ + end; ++part) sums_[part] = sumOf(part);
+  parallelFor(exec_, meshes_.skin.parts(), 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t part = firstSkin_ + begin; part < firstSkin_ + end; ++part)
+      forTriangles(part, [&](const Triangle& t) { addTo(sums_[part], t); });
   });
-  parallelFor(exec_, meshes_.sheet.parts(), 512, [&](std::size_t begin, std::size_t end) {
+  parallelFor(exec_, meshes_.sheet.parts(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t part = firstSheet_ + 2 * begin; part < firstSheet_ + 2 * end; part += 2) {
-      sums_[part] = sumOf(part);
+      forTriangles(part, [&](const Triangle& t) { addTo(sums_[part], t); });
       sums_[part + 1] -= sums_[part];  // the same triangles turned over
     }
   });
+}
+
+/// The largest part gets what the others and the cut triangles leave of the patch.
+void CellParts::sumPatch(std::size_t patch, std::span<const unsigned char> isCut) {
+  const std::size_t first = at(partBegin_[patch]), last = at(partBegin_[patch + 1]);
+  if (first == last) return;
+  std::size_t largest = first;
+  for (std::size_t part = first; part < last; ++part)
+    if (uncut_[part].size() > uncut_[largest].size()) largest = part;
+  SolidSums rest = tets_.patches.sums[patch];
+  if (!whole_[patch]) {
+    SolidSums cut;
+    for (const Index t : tets_.patches.trianglesOf(patch))
+      if (isCut[at(t)]) addTo(cut, arrangement_.surface[at(t)]);
+    rest -= cut;
+  }
+  for (std::size_t part = first; part < last; ++part) {
+    if (part == largest) continue;
+    for (const Index t : uncut_[part]) addTo(sums_[part], arrangement_.surface[at(t)]);
+    rest -= sums_[part];
+  }
+  sums_[largest] = rest;
+}
+
+void CellParts::addTo(SolidSums& sums, const Triangle& t) const {
+  const std::vector<Vec3>& positions = arrangement_.positions;
+  const Vec3& origin = tets_.patches.origin;
+  sums.add(positions[at(t[0])] - origin, positions[at(t[1])] - origin, positions[at(t[2])] - origin);
 }
 
 }  // namespace sherd

@@ -64,6 +64,11 @@ class CellParts {
     Index low, high, cell, part;
     bool meets(const Side& o) const { return low == o.low && high == o.high && cell == o.cell; }
   };
+  /// What a block of patches has to do with others.
+  struct PatchLinks {
+    std::vector<std::array<Index, 2>> joined;  ///< parts
+    std::vector<Side> sides;                   ///< of edges to cut triangles
+  };
 
   bool isBack(std::size_t part) const { return (part - firstSheet_) % 2 == 0; }
   void splitPatches(std::span<const unsigned char> isCut);
@@ -75,9 +80,13 @@ class CellParts {
     return at(partBegin_[patch] + (whole_[patch] ? 0 : partOf_[t]));
   }
   void joinUncut(std::span<const unsigned char> isCut, std::vector<Side>& sides);
-  void addBorders(std::vector<Side>& sides) const;
+  void linkPatch(std::size_t patch, std::span<const unsigned char> isCut, PatchLinks& links) const;
+  void addSkinBorders(std::vector<Side>& sides) const;
+  void joinSheets(std::vector<Side>& sides);
   void joinSides(std::span<const Side> sides);
-  void sumUp();
+  void sumUp(std::span<const unsigned char> isCut);
+  void sumPatch(std::size_t patch, std::span<const unsigned char> isCut);
+  void addTo(SolidSums& sums, const Triangle& t) const;
 
   const TetMesh& tets_;
   const Arrangement& arrangement_;

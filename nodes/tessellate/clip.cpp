@@ -176,20 +176,42 @@ class Clipper {
     if (!crossed && !a_.sheetInside[at(own[0])]) return 0;
     std::vector<Index> corners(own.begin(), own.end());
     for (Index& v : corners) v += a_.firstCrack;
-    if (!crossed && fan(corners, p, out)) return 0;
+    const std::size_t border = out.border.size();
+    int forced = 0;
+    if (crossed || !fan(corners, p, out)) forced = clipCorners(polygon, corners, cut, out);
+    nameWholeEdges(corners, edges, std::span(out.border).subspan(border));
+    return forced;
+  }
+
+  int clipCorners(Index polygon, std::span<const Index> corners, CutPolygon& cut,
+                  PartedTriangles<SheetTriangle>& out) const {
+    const SheetPolygon& p = sheets_.polygons[at(polygon)];
+    const std::span<const Index> own = sheets_.cornersOf(p), edges = sheets_.edgesOf(p);
     cut.begin(corners);
     for (std::size_t side = 0; side < corners.size(); ++side)
       walkSide(a_.sheetCrossings.on(edges[side]), sheets_.forward(p, static_cast<Index>(side)), corners[side],
                corners[(side + 1) % corners.size()], side, a_.sheetInside[at(own[side])] ? 0 : 1, sidesAcross,
                false, cut);
     // On the sheet, seen from its front, a segment has the inside on its left when run backwards.
-    for (Index i = first; i < last; ++i) {
+    for (Index i = a_.byPolygonBegin[at(polygon)]; i < a_.byPolygonBegin[at(polygon) + 1]; ++i) {
       const Segment& segment = a_.segments[at(a_.byPolygon[at(i)])];
       cut.addInnerVertex(segment.from);
       cut.addInnerVertex(segment.to);
       cut.addHalfEdge(segment.to, segment.from, 0);
     }
     return cut.triangulate(out, [&](const Triangle& t, Index) { return SheetTriangle{t, p.front, p.back}; });
+  }
+
+  /// Those that run from corner to corner, but for those on the cage's boundary, along which the skin may
+  /// lie.
+  void nameWholeEdges(std::span<const Index> corners, std::span<const Index> edges,
+                      std::span<BorderEdge> border) const {
+    const auto onCage = [&](Index vertex) { return sheets_.onCage[at(vertex - a_.firstCrack)] != 0; };
+    for (BorderEdge& e : border)
+      for (std::size_t i = 0; i < corners.size(); ++i)
+        if (corners[i] == e.from && corners[(i + 1) % corners.size()] == e.to &&
+            !(onCage(e.from) && onCage(e.to)))
+          e.whole = edges[i];
   }
 
   /// A whole polygon, which is convex, by a fan from the corner that makes its smallest triangle largest.
@@ -234,6 +256,15 @@ ClippedMeshes clip(const Arrangement& arrangement, const Sheets& sheets, const E
   return Clipper(arrangement, sheets, exec).run();
 }
 
+CornerWeights onSide(const Vec3& from, const Vec3& to, Eigen::Index p, Eigen::Index q, const Vec3& point) {
+  const Vec3 side = to - from;
+  const double length2 = side.squaredNorm();
+  CornerWeights weights = CornerWeights::Unit(p);
+  if (length2 > 0) weights[q] = std::clamp((point - from).dot(side) / length2, 0.0, 1.0);
+  weights[p] = 1 - weights[q];
+  return weights;
+}
+
 CornerWeights barycentric(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& point) {
   const std::array<Vec3, 3> corner{a, b, c};
   const auto residual = [&](const CornerWeights& w) {
@@ -251,11 +282,8 @@ CornerWeights barycentric(const Vec3& a, const Vec3& b, const Vec3& c, const Vec
   // In a sliver areas lose their digits, and the nearest point of a side serves better.
   for (Eigen::Index i = 0; i < 3; ++i) {
     const Eigen::Index j = (i + 1) % 3;
-    const Vec3 &p = corner[static_cast<std::size_t>(i)], side = corner[static_cast<std::size_t>(j)] - p;
-    const double length2 = side.squaredNorm();
-    CornerWeights w = CornerWeights::Unit(i);
-    if (length2 > 0) w[j] = std::clamp((point - p).dot(side) / length2, 0.0, 1.0);
-    w[i] = 1 - w[j];
+    const CornerWeights w =
+        onSide(corner[static_cast<std::size_t>(i)], corner[static_cast<std::size_t>(j)], i, j, point);
     if (residual(w) < residual(best)) best = w;
   }
   return best;

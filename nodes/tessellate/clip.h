@@ -37,6 +37,9 @@ struct ClippedMeshes {
 /// O(Σ n²) for n segments in a cut triangle or polygon.
 ClippedMeshes clip(const Arrangement& arrangement, const Sheets& sheets, const Exec& exec);
 
+/// Barycentric coordinates of the point of side pq, of corners number p and q, that is closest to `point`.
+CornerWeights onSide(const Vec3& from, const Vec3& to, Eigen::Index p, Eigen::Index q, const Vec3& point);
+
 /// Barycentric coordinates, in [0, 1], of a point of the triangle with corners a, b, c: from areas seen along
 /// its normal, or on a side where that comes closer to the point.
 CornerWeights barycentric(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& point);

@@ -2,7 +2,6 @@
 // alone.
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -10,12 +9,18 @@
 
 namespace sherd {
 
+/// An edge of one triangle of its part, in its direction.
+struct BorderEdge {
+  Index from, to;  ///< vertices
+  Index whole;     ///< the sheets' edge that it is, from end to end; −1 for any other
+};
+
 /// T has `corners`.
 template <class T>
 struct PartedTriangles {
   std::vector<T> triangles;
-  std::vector<Index> first, firstBorder;     ///< per part: its first triangle and border edge
-  std::vector<std::array<Index, 2>> border;  ///< edges of one triangle of the part, in its direction
+  std::vector<Index> first, firstBorder;  ///< per part: its first triangle and border edge
+  std::vector<BorderEdge> border;
 
   std::size_t parts() const { return first.size(); }
   std::size_t begin(std::size_t part) const { return at(first[part]); }
@@ -25,7 +30,7 @@ struct PartedTriangles {
   std::span<const T> of(std::size_t part) const {
     return std::span(triangles).subspan(begin(part), end(part) - begin(part));
   }
-  std::span<const std::array<Index, 2>> borderOf(std::size_t part) const {
+  std::span<const BorderEdge> borderOf(std::size_t part) const {
     const std::size_t from = at(firstBorder[part]);
     return std::span(border).subspan(
         from, (part + 1 < first.size() ? at(firstBorder[part + 1]) : border.size()) - from);
@@ -38,7 +43,8 @@ struct PartedTriangles {
   /// Begins a part with this loop as its border.
   void startPart(std::span<const Index> loop) {
     startPart();
-    for (std::size_t i = 0; i < loop.size(); ++i) border.push_back({loop[i], loop[(i + 1) % loop.size()]});
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      border.push_back({loop[i], loop[(i + 1) % loop.size()], -1});
   }
   /// A part of its own.
   void addAlone(const T& t) {
@@ -65,7 +71,7 @@ struct PartedTriangles {
       first.push_back(static_cast<Index>(t));
       firstBorder.push_back(static_cast<Index>(3 * t));
       for (std::size_t c = 0; c < 3; ++c)
-        border.push_back({triangles[t].corners[c], triangles[t].corners[(c + 1) % 3]});
+        border.push_back({triangles[t].corners[c], triangles[t].corners[(c + 1) % 3], -1});
     }
   }
 };

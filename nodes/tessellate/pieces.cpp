@@ -146,22 +146,33 @@ class Assembler {
   }
 
   void weighCorners() {
+    std::vector<Index> edgeOf(a_.positions.size() - at(a_.firstCrack), -1);
+    for (const Crossing& x : a_.surfaceCrossings.list) edgeOf[at(x.vertex - a_.firstCrack)] = x.edge;
     out_.cutCorners.resize(m_.skin.triangles.size());
     parallelFor(exec_, m_.skin.triangles.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) weigh(m_.skin.triangles[i], out_.cutCorners[i]);
+      for (std::size_t i = begin; i < end; ++i)
+        for (std::size_t c = 0; c < 3; ++c)
+          out_.cutCorners[i][c] =
+              weights(a_.surface[at(m_.skin.triangles[i].source)], m_.skin.triangles[i].corners[c], edgeOf);
     });
   }
 
-  void weigh(const SkinTriangle& skin, std::array<CornerWeights, 3>& weights) const {
-    const Triangle& source = a_.surface[at(skin.source)];
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto corner = std::find(source.begin(), source.end(), skin.corners[c]);
-      if (corner != source.end())
-        weights[c] = CornerWeights::Unit(corner - source.begin());
-      else
-        weights[c] = barycentric(a_.positions[at(source[0])], a_.positions[at(source[1])],
-                                 a_.positions[at(source[2])], a_.positions[at(skin.corners[c])]);
+  /// Weights of the corners of `source` at a vertex in it. `edgeOf`: per new vertex, the cut edge that it
+  /// lies on.
+  CornerWeights weights(const Triangle& source, Index vertex, std::span<const Index> edgeOf) const {
+    const auto cornerOf = [&](Index v) {
+      return std::find(source.begin(), source.end(), v) - source.begin();
+    };
+    const Vec3& point = a_.positions[at(vertex)];
+    if (vertex < a_.firstCrack) {
+      if (const auto corner = cornerOf(vertex); corner < 3) return CornerWeights::Unit(corner);
+    } else if (const Index edge = edgeOf[at(vertex - a_.firstCrack)]; edge >= 0) {
+      const auto [from, to] = a_.cutEdges[at(edge)];
+      const auto p = cornerOf(from), q = cornerOf(to);
+      if (p < 3 && q < 3) return onSide(a_.positions[at(from)], a_.positions[at(to)], p, q, point);
     }
+    return barycentric(a_.positions[at(source[0])], a_.positions[at(source[1])], a_.positions[at(source[2])],
+                       point);
   }
 
   void fillPieces() {

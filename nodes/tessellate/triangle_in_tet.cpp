@@ -7,10 +7,7 @@ namespace sherd {
 namespace {
 
 constexpr double kUnit = 0x1p-53;
-/// Relative error bounds of weights up to which doubles, and extended precision where the bound is that of
-/// doubles, give positions that are right to the last digits. (The bounds are a hundred times what is
-/// typical.)
-constexpr double kDoubleWillDo = 1e-15, kExtendedWillDo = 2e-12;
+constexpr double kExtended = 0x1p-11;  ///< how much less extended precision is off than doubles are
 
 using Wide = long double;
 
@@ -243,7 +240,7 @@ bool TriangleInTet::meets(Index back, Index front, std::span<const SheetEdgeLine
   return true;
 }
 
-std::array<double, 3> TriangleInTet::weights(const SegmentEnd& end) const {
+std::array<double, 3> TriangleInTet::weights(const SegmentEnd& end, double tolerance) const {
   const bool onSide = end.side >= 0;
   const int own = static_cast<int>(end.slot);
   std::array<std::size_t, 3> corners{0, 1, 2};
@@ -264,10 +261,14 @@ std::array<double, 3> TriangleInTet::weights(const SegmentEnd& end) const {
       minors([&](std::size_t c) { return sheet_[c]; }, [&](std::size_t c) { return value(own, c); });
   const Approx sum = rough[0] + rough[1] + rough[2];
   const double error = std::max({sum.error, rough[0].error, rough[1].error, rough[2].error});
+  double extent = 0;  // between the corners that the point is made of
+  for (std::size_t i = 1; i < n; ++i)
+    extent = std::max(extent, (vertices_[corners[i]] - vertices_[corners[0]]).cwiseAbs().maxCoeff());
+  const double off = 4 * error * extent, allowed = tolerance * std::abs(sum.value);
   std::array<double, 3> result{};
-  if (error <= kDoubleWillDo * std::abs(sum.value)) {
+  if (off <= allowed) {
     for (std::size_t i = 0; i < n; ++i) result[corners[i]] = rough[i].value / sum.value;
-  } else if (error <= kExtendedWillDo * std::abs(sum.value)) {
+  } else if (off * kExtended <= allowed) {
     const WidePlane sheet(frame_, front_, back_);
     const auto line = [&] {
       if (onSide) return sheet;

@@ -69,8 +69,9 @@ class TriangleInTet {
 
   /// Sign of g_front − g_back of the last polygon at a corner.
   int signAtCorner(std::size_t corner) const { return signs_[corner]; }
-  /// Weights of the corners in an end of the last polygon's segment.
-  std::array<double, 3> weights(const SegmentEnd& end) const;
+  /// Weights of the corners in an end of the last polygon's segment, so that the point that they give is off
+  /// by no more than `tolerance` (m) and the rounding of its coordinates.
+  std::array<double, 3> weights(const SegmentEnd& end, double tolerance) const;
 
  private:
   static constexpr int kSheet = -1;  ///< the function g_front − g_back; from 0 on an edge line's

@@ -19,13 +19,17 @@ struct SolidSums {
     volume += v;
     const Vec3 s = a + b + c;
     // ∫ x dV = v/4 s, and ∫ x xᵀ dV = v/20 (a aᵀ + b bᵀ + c cᵀ + s sᵀ).
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3;
-      const auto k = static_cast<std::size_t>(i);
-      first[k] += v / 4 * s[i];
-      second[k] += v / 20 * (a[i] * a[i] + b[i] * b[i] + c[i] * c[i] + s[i] * s[i]);
-      second[k + 3] += v / 20 * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + s[i] * s[j]);
-    }
+    const auto moment = [&](int i, int j) { return a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + s[i] * s[j]; };
+    const double quarter = v / 4, twentieth = v / 20;
+    first[0] += quarter * s[0];
+    first[1] += quarter * s[1];
+    first[2] += quarter * s[2];
+    second[0] += twentieth * moment(0, 0);
+    second[1] += twentieth * moment(1, 1);
+    second[2] += twentieth * moment(2, 2);
+    second[3] += twentieth * moment(0, 1);
+    second[4] += twentieth * moment(1, 2);
+    second[5] += twentieth * moment(2, 0);
   }
 
   SolidSums& operator+=(const SolidSums& o) {
