@@ -65,11 +65,6 @@ struct BlockPolygons {
   std::size_t cutTets = 0;
 };
 
-void sortFirst(Tetra& list, std::size_t n) {
-  for (std::size_t i = 1; i < n; ++i)
-    for (std::size_t k = i; k > 0 && list[k - 1] > list[k]; --k) std::swap(list[k - 1], list[k]);
-}
-
 template <class Number>
 Number determinant(const std::array<std::array<Number, 4>, 4>& m, std::size_t n) {
   if (n == 1) return m[0][0];
@@ -116,6 +111,13 @@ class TetEnvelope {
   using Line = Index;
   static bool isFace(Line l) { return l < 4; }
 
+  /// Per two faces the two corners that lie on both.
+  static constexpr std::array<std::array<std::array<unsigned char, 2>, 4>, 4> kRest{
+      {{{{0, 0}, {2, 3}, {1, 3}, {1, 2}}},
+       {{{2, 3}, {0, 0}, {0, 3}, {0, 2}}},
+       {{{1, 3}, {0, 3}, {0, 0}, {0, 1}}},
+       {{{1, 2}, {0, 2}, {0, 1}, {0, 0}}}}};
+
   /// Where a corner is, as the nodes' weights, each off by no more than `error`; what the filters go by.
   struct Corner {
     std::array<double, 4> weight{};
@@ -125,6 +127,8 @@ class TetEnvelope {
   void begin(Index tet) {
     tet_ = tet;
     nodes_ = tets_.tets[at(tet)];
+    ascending_ = {0, 1, 2, 3};
+    std::sort(ascending_.begin(), ascending_.end(), [&](Line a, Line b) { return nodes_[at(a)] < nodes_[at(b)]; });
     for (std::size_t i = 0; i < 4; ++i) {
       g_[i] = values_.at(nodes_[i]);
       atBoundary_[i] = !tets_.neighbours.empty() && tets_.neighbours[at(tet)][i] < 0;
@@ -160,35 +164,32 @@ class TetEnvelope {
       lines_ = {c, a, d, b};
     const std::size_t n = lines_.size();
     corners_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) corners_[i] = cornerOnEdge(lines_[(i + n - 1) % n], lines_[i]);
+    for (std::size_t i = 0; i < n; ++i) placeOnEdge(lines_[i == 0 ? n - 1 : i - 1], lines_[i], corners_[i]);
     return true;
   }
 
   /// Where the plane meets the edge that two faces share.
-  Corner cornerOnEdge(Line one, Line other) const {
-    std::array<std::size_t, 2> ends{};
-    for (std::size_t i = 0, k = 0; i < 4; ++i)
-      if (one != static_cast<Line>(i) && other != static_cast<Line>(i)) ends[k++] = i;
+  void placeOnEdge(Line one, Line other, Corner& corner) const {
+    const std::array<unsigned char, 2>& ends = kRest[at(one)][at(other)];
     const double from = g_[ends[0]][front_] - g_[ends[0]][back_],
                  to = g_[ends[1]][front_] - g_[ends[1]][back_];
-    Corner corner;
-    corner.error = 0x1p-50;  // differences off by a unit each, and three roundings
     const double t = from != to ? from / (from - to) : 0.5;
-    if (from == to) corner.error = 1;  // both 0: it may be anywhere between
+    // Differences are off by a unit each, and there are three roundings; where both are 0 it may be anywhere.
+    corner.error = from != to ? 0x1p-50 : 1;
+    corner.weight = {};
     corner.weight[ends[0]] = 1 - t;
     corner.weight[ends[1]] = t;
-    return corner;
   }
 
   /// Between corners where a function is `from` > 0 and `to` < 0, each off by no more than `error`.
-  static Corner between(const Corner& a, const Corner& b, double from, double to, double error) {
+  static void placeBetween(const Corner& a, const Corner& b, double from, double to, double error,
+                           Corner& corner) {
     from = std::max(from, 0.0), to = std::min(to, 0.0);
     const double length = from - to;
-    Corner corner;
     if (!(length > 8 * error)) {
       corner.error = 1;
       for (std::size_t i = 0; i < 4; ++i) corner.weight[i] = 0.5 * (a.weight[i] + b.weight[i]);
-      return corner;
+      return;
     }
     const double t = from / length;
     double apart = 0;
@@ -198,7 +199,6 @@ class TetEnvelope {
     }
     const double inherited = std::max(a.error, b.error);
     corner.error = inherited + (apart + 2 * inherited) * (4 * error / length) + 0x1p-50;
-    return corner;
   }
 
   /// det and what it would be with all its products positive, of the differences' rounded values.
@@ -315,20 +315,20 @@ class TetEnvelope {
     std::size_t first = 0;
     while (!(signs_[first] > 0 && signs_[(first + n - 1) % n] < 0)) ++first;
     const std::size_t last = (first + kept - 1) % n, before = (first + n - 1) % n, after = (last + 1) % n;
-    const auto corner = [&](std::size_t in, std::size_t out) {
-      return between(corners_[in], corners_[out], valueAt_[in], valueAt_[out],
-                     std::max(errorAt_[in], errorAt_[out]));
+    const auto place = [&](std::size_t in, std::size_t out, Corner& corner) {
+      placeBetween(corners_[in], corners_[out], valueAt_[in], valueAt_[out],
+                   std::max(errorAt_[in], errorAt_[out]), corner);
     };
     // The new line leads from where the kept corners end to where they begin.
-    clippedLines_.clear(), clippedCorners_.clear();
-    clippedLines_.push_back(lines_[before]);
-    clippedCorners_.push_back(corner(first, before));
-    for (std::size_t i = 0; i < kept; ++i) {
-      clippedLines_.push_back(lines_[(first + i) % n]);
-      clippedCorners_.push_back(corners_[(first + i) % n]);
+    clippedLines_.resize(kept + 2), clippedCorners_.resize(kept + 2);
+    clippedLines_.front() = lines_[before];
+    place(first, before, clippedCorners_.front());
+    for (std::size_t i = 0, from = first; i < kept; ++i, from = from + 1 == n ? 0 : from + 1) {
+      clippedLines_[i + 1] = lines_[from];
+      clippedCorners_[i + 1] = corners_[from];
     }
-    clippedLines_.push_back(third + 4);
-    clippedCorners_.push_back(corner(last, after));
+    clippedLines_.back() = third + 4;
+    place(last, after, clippedCorners_.back());
     lines_.swap(clippedLines_);
     corners_.swap(clippedCorners_);
     return true;
@@ -349,15 +349,17 @@ class TetEnvelope {
   VertexName nameOf(Line one, Line other) const {
     VertexName name;
     std::size_t n = 0;
-    for (Line i = 0; i < 4; ++i)
-      if (one != i && other != i) name.nodes[n++] = nodes_[static_cast<std::size_t>(i)];
-    sortFirst(name.nodes, n);
-    n = 0;
-    name.ranks[n++] = back_;
-    name.ranks[n++] = front_;
-    for (const Line l : {one, other})
-      if (!isFace(l)) name.ranks[n++] = l - 4;
-    sortFirst(name.ranks, n);
+    for (const Line i : ascending_)
+      if (one != i && other != i) name.nodes[n++] = nodes_[at(i)];
+    name.ranks[0] = back_;  // back_ < front_
+    name.ranks[1] = front_;
+    n = 2;
+    for (const Line l : {one, other}) {
+      if (isFace(l)) continue;
+      std::size_t place = n++;
+      for (; place > 0 && name.ranks[place - 1] > l - 4; --place) name.ranks[place] = name.ranks[place - 1];
+      name.ranks[place] = l - 4;
+    }
     return name;
   }
 
@@ -365,6 +367,7 @@ class TetEnvelope {
   const SiteValues& values_;
   Index tet_ = -1;
   Tetra nodes_{};
+  std::array<Line, 4> ascending_{};  ///< the corners by their nodes' numbers
   std::array<const double*, 4> g_{};
   std::array<bool, 4> atBoundary_{};
   Index back_ = -1, front_ = -1;
