@@ -198,19 +198,25 @@ void CellParts::joinSides(std::span<const Side> sides) {
 
 void CellParts::sumUp(std::span<const unsigned char> isCut) {
   sums_.resize(size());
-  parallelFor(exec_, whole_.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) sumPatch(p, isCut);
+  const std::size_t patches = whole_.size(), skin = patches + meshes_.skin.parts();
+  parallelFor(exec_, skin + meshes_.sheet.parts(), 128, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (i < patches)
+        sumPatch(i, isCut);
+      else if (i < skin)
+        sumTriangles(firstSkin_ + i - patches);
+      else
+        sumSheet(firstSheet_ + 2 * (i - skin));
   });
-  parallelFor(exec_, meshes_.skin.parts(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t part = firstSkin_ + begin; part < firstSkin_ + end; ++part)
-      forTriangles(part, [&](const Triangle& t) { addTo(sums_[part], t); });
-  });
-  parallelFor(exec_, meshes_.sheet.parts(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t part = firstSheet_ + 2 * begin; part < firstSheet_ + 2 * end; part += 2) {
-      forTriangles(part, [&](const Triangle& t) { addTo(sums_[part], t); });
-      sums_[part + 1] -= sums_[part];  // the same triangles turned over
-    }
-  });
+}
+
+void CellParts::sumTriangles(std::size_t part) {
+  forTriangles(part, [&](const Triangle& t) { addTo(sums_[part], t); });
+}
+
+void CellParts::sumSheet(std::size_t back) {
+  sumTriangles(back);
+  sums_[back + 1] -= sums_[back];  // the same triangles turned over
 }
 
 /// The largest part gets what the others and the cut triangles leave of the patch.
@@ -229,7 +235,7 @@ void CellParts::sumPatch(std::size_t patch, std::span<const unsigned char> isCut
   }
   for (std::size_t part = first; part < last; ++part) {
     if (part == largest) continue;
-    for (const Index t : uncut_[part]) addTo(sums_[part], arrangement_.surface[at(t)]);
+    sumTriangles(part);
     rest -= sums_[part];
   }
   sums_[largest] = rest;

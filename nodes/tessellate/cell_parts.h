@@ -86,6 +86,8 @@ class CellParts {
   void joinSides(std::span<const Side> sides);
   void sumUp(std::span<const unsigned char> isCut);
   void sumPatch(std::size_t patch, std::span<const unsigned char> isCut);
+  void sumTriangles(std::size_t part);
+  void sumSheet(std::size_t back);
   void addTo(SolidSums& sums, const Triangle& t) const;
 
   const TetMesh& tets_;

@@ -13,7 +13,7 @@
 namespace sherd {
 namespace {
 
-constexpr std::size_t kBlock = 128;  ///< triangles a task
+constexpr std::size_t kBlock = 64;  ///< triangles or polygons a task
 
 /// Vertices on one spot, found by hashing their coordinates: among the sheets' vertices, the crossings, and
 /// the corners of cut triangles, the only ones that can meet there.
@@ -60,36 +60,48 @@ class Clipper {
 
   ClippedMeshes run() {
     result_.same = EqualPositions(a_).take();
-    inBlocks(a_.cutTriangles.size(), result_.skin,
-             [this](std::size_t i, CutPolygon& cut, PartedTriangles<SkinTriangle>& out) {
-               return splitAtOnce(i, out) ? 0 : splitSurfaceTriangle(i, cut, out);
-             });
-    inBlocks(sheets_.polygons.size(), result_.sheet,
-             [this](std::size_t p, CutPolygon& cut, PartedTriangles<SheetTriangle>& out) {
-               return clipPolygon(static_cast<Index>(p), cut, out);
-             });
+    const std::size_t skin = blocksOf(a_.cutTriangles.size()), all = skin + blocksOf(sheets_.polygons.size());
+    std::vector<PartedTriangles<SkinTriangle>> skinBlocks(skin);
+    std::vector<PartedTriangles<SheetTriangle>> sheetBlocks(all - skin);
+    std::vector<int> forced(all, 0);
+    parallelFor(exec_, all, 1, [&](std::size_t begin, std::size_t end) {
+      CutPolygon cut(a_.positions, result_.same);
+      for (std::size_t b = begin; b < end; ++b)
+        forced[b] =
+            b < skin ? splitBlock(b, cut, skinBlocks[b]) : clipBlock(b - skin, cut, sheetBlocks[b - skin]);
+    });
+    gather(skinBlocks, result_.skin);
+    gather(sheetBlocks, result_.sheet);
+    result_.forced = static_cast<std::size_t>(std::accumulate(forced.begin(), forced.end(), 0));
     return std::move(result_);
   }
 
  private:
-  /// f(i, cut, out) appends to out and returns how many triangles were forced.
-  template <class T, class F>
-  void inBlocks(std::size_t n, PartedTriangles<T>& out, F f) {
-    const std::size_t blocks = (n + kBlock - 1) / kBlock;
-    std::vector<PartedTriangles<T>> made(blocks);
-    std::vector<int> forced(blocks, 0);
-    parallelFor(exec_, n, kBlock, [&](std::size_t begin, std::size_t end) {
-      CutPolygon cut(a_.positions, result_.same);
-      PartedTriangles<T>& own = made[begin / kBlock];
-      own.reserve(4 * kBlock, 2 * kBlock, 8 * kBlock);
-      for (std::size_t i = begin; i < end; ++i) forced[begin / kBlock] += f(i, cut, own);
-    });
+  static std::size_t blocksOf(std::size_t n) { return (n + kBlock - 1) / kBlock; }
+
+  /// Both return how many triangles were forced.
+  int splitBlock(std::size_t block, CutPolygon& cut, PartedTriangles<SkinTriangle>& out) const {
+    out.reserve(4 * kBlock, 2 * kBlock, 8 * kBlock);
+    int forced = 0;
+    for (std::size_t i = block * kBlock; i < std::min(a_.cutTriangles.size(), (block + 1) * kBlock); ++i)
+      if (!splitAtOnce(i, out)) forced += splitSurfaceTriangle(i, cut, out);
+    return forced;
+  }
+  int clipBlock(std::size_t block, CutPolygon& cut, PartedTriangles<SheetTriangle>& out) const {
+    out.reserve(4 * kBlock, kBlock, 8 * kBlock);
+    int forced = 0;
+    for (std::size_t p = block * kBlock; p < std::min(sheets_.polygons.size(), (block + 1) * kBlock); ++p)
+      forced += clipPolygon(static_cast<Index>(p), cut, out);
+    return forced;
+  }
+
+  template <class T>
+  static void gather(const std::vector<PartedTriangles<T>>& blocks, PartedTriangles<T>& out) {
     std::size_t triangles = 0, parts = 0, border = 0;
-    for (const auto& block : made)
+    for (const auto& block : blocks)
       triangles += block.triangles.size(), parts += block.parts(), border += block.border.size();
     out.reserve(triangles, parts, border);
-    for (const auto& block : made) out.append(block);
-    for (const int k : forced) result_.forced += static_cast<std::size_t>(k);
+    for (const auto& block : blocks) out.append(block);
   }
 
   std::span<const Crossing> crossingsOn(Index cutEdge) const {

@@ -12,8 +12,8 @@ namespace sherd {
 namespace {
 
 constexpr std::size_t kBlock = 32;  ///< tetrahedra a task
-/// Relative error bound in doubles up to which extended precision is right to the last digit.
-constexpr double kExtendedWillDo = 2e-12;
+/// How much less extended precision is off than doubles are.
+constexpr double kExtended = 0x1p-11;
 
 /// Names a vertex: nodes and ranks, each ascending and padded with −1.
 struct VertexName {
@@ -128,7 +128,8 @@ class TetEnvelope {
     tet_ = tet;
     nodes_ = tets_.tets[at(tet)];
     ascending_ = {0, 1, 2, 3};
-    std::sort(ascending_.begin(), ascending_.end(), [&](Line a, Line b) { return nodes_[at(a)] < nodes_[at(b)]; });
+    std::sort(ascending_.begin(), ascending_.end(),
+              [&](Line a, Line b) { return nodes_[at(a)] < nodes_[at(b)]; });
     for (std::size_t i = 0; i < 4; ++i) {
       g_[i] = values_.at(nodes_[i]);
       atBoundary_[i] = !tets_.neighbours.empty() && tets_.neighbours[at(tet)][i] < 0;
@@ -394,7 +395,8 @@ std::array<Number, 4> minorsOf(std::size_t n, Difference differenceAt) {
   return minors;
 }
 
-std::array<double, 4> weightsOf(const VertexName& name, const SiteValues& values) {
+/// Off by no more than `tolerance`, as a share of one.
+std::array<double, 4> weightsOf(const VertexName& name, const SiteValues& values, double tolerance) {
   const std::size_t n = name.dimension() + 1;
   const auto rough = minorsOf<Approx>(n, [&](std::size_t r, std::size_t c) {
     return difference(values.at(name.nodes[r]), name.ranks[c + 1], name.ranks[0]);
@@ -405,7 +407,13 @@ std::array<double, 4> weightsOf(const VertexName& name, const SiteValues& values
     sum = sum + rough[i];
     error = std::max({error, rough[i].error, sum.error});
   }
-  if (error <= kExtendedWillDo * std::abs(sum.value)) {
+  const double off = 4 * error, allowed = tolerance * std::abs(sum.value);
+  if (off <= allowed) {
+    std::array<double, 4> weights{};
+    for (std::size_t i = 0; i < n; ++i) weights[i] = rough[i].value / sum.value;
+    return weights;
+  }
+  if (off * kExtended <= allowed) {
     using Wide = long double;
     const auto fine = minorsOf<Wide>(n, [&](std::size_t r, std::size_t c) {
       const double* g = values.at(name.nodes[r]);
@@ -430,10 +438,15 @@ std::array<double, 4> weightsOf(const VertexName& name, const SiteValues& values
   return nodeWeights(std::span(rows).first(n), std::span(functions).first(n - 1));
 }
 
-/// From the heaviest node, so that a vertex close to a node keeps that node's digits.
-Vec3 positionOf(const VertexName& name, const SiteValues& values, const TetMesh& tets) {
-  const std::array<double, 4> weights = weightsOf(name, values);
+/// Off by no more than `tolerance` (m) and the rounding of coordinates. From the heaviest node, so that a
+/// vertex close to a node keeps that node's digits.
+Vec3 positionOf(const VertexName& name, const SiteValues& values, const TetMesh& tets, double tolerance) {
   const std::size_t n = name.dimension() + 1;
+  double extent = 0;
+  for (std::size_t i = 1; i < n; ++i)
+    extent = std::max(extent,
+                      (tets.nodes[at(name.nodes[i])] - tets.nodes[at(name.nodes[0])]).cwiseAbs().maxCoeff());
+  const std::array<double, 4> weights = weightsOf(name, values, tolerance / extent);
   const auto base = static_cast<std::size_t>(
       std::max_element(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(n)) - weights.begin());
   const Vec3& origin = tets.nodes[at(name.nodes[base])];
@@ -497,8 +510,10 @@ ExactSheets exactSheets(const TetMesh& tets, const SiteValues& values, const Exe
   sheets.vertices.resize(names.size());
   sheets.simplexOf.reserve(names.size());
   for (const VertexName& name : names) sheets.simplexOf.push_back(name.nodes);
+  const double tolerance = 0x1p-52 * boxOf(tets.nodes).diagonal();
   parallelFor(exec, names.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) sheets.vertices[v] = positionOf(names[v], values, tets);
+    for (std::size_t v = begin; v < end; ++v)
+      sheets.vertices[v] = positionOf(names[v], values, tets, tolerance);
   });
   sheets.connect();
   return result;

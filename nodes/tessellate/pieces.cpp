@@ -36,7 +36,6 @@ class Assembler {
     findPieces();
     numberSheets();
     numberVertices();
-    weighCorners();
     takePositions();
     fillPieces();
     if (exec_.cancelled()) return {};
@@ -139,43 +138,32 @@ class Assembler {
     vertexCount_ = at(next);
   }
 
-  Triangle renumbered(Triangle t) const {
-    for (Index& v : t)
-      if (v >= a_.firstCrack) v = number_[at(v - a_.firstCrack)];
-    return t;
+  Index renumbered(Index v) const { return v < a_.firstCrack ? v : number_[at(v - a_.firstCrack)]; }
+  Triangle renumbered(const Triangle& t) const {
+    return {renumbered(t[0]), renumbered(t[1]), renumbered(t[2])};
   }
 
-  void weighCorners() {
-    std::vector<Index> edgeOf(a_.positions.size() - at(a_.firstCrack), -1);
-    for (const Crossing& x : a_.surfaceCrossings.list) edgeOf[at(x.vertex - a_.firstCrack)] = x.edge;
-    out_.cutCorners.resize(m_.skin.triangles.size());
-    parallelFor(exec_, m_.skin.triangles.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        for (std::size_t c = 0; c < 3; ++c)
-          out_.cutCorners[i][c] =
-              weights(a_.surface[at(m_.skin.triangles[i].source)], m_.skin.triangles[i].corners[c], edgeOf);
-    });
-  }
+  const Vec3& position(Index vertex) const { return out_.positions[at(renumbered(vertex))]; }
 
-  /// Weights of the corners of `source` at a vertex in it. `edgeOf`: per new vertex, the cut edge that it
-  /// lies on.
-  CornerWeights weights(const Triangle& source, Index vertex, std::span<const Index> edgeOf) const {
+  /// Weights of the corners of `source` at a vertex in it.
+  CornerWeights weights(const Triangle& source, Index vertex) const {
     const auto cornerOf = [&](Index v) {
       return std::find(source.begin(), source.end(), v) - source.begin();
     };
-    const Vec3& point = a_.positions[at(vertex)];
     if (vertex < a_.firstCrack) {
       if (const auto corner = cornerOf(vertex); corner < 3) return CornerWeights::Unit(corner);
-    } else if (const Index edge = edgeOf[at(vertex - a_.firstCrack)]; edge >= 0) {
+    } else if (const Index edge = cutEdgeOf_[at(vertex - a_.firstCrack)]; edge >= 0) {
       const auto [from, to] = a_.cutEdges[at(edge)];
       const auto p = cornerOf(from), q = cornerOf(to);
-      if (p < 3 && q < 3) return onSide(a_.positions[at(from)], a_.positions[at(to)], p, q, point);
+      if (p < 3 && q < 3) return onSide(position(from), position(to), p, q, position(vertex));
     }
-    return barycentric(a_.positions[at(source[0])], a_.positions[at(source[1])], a_.positions[at(source[2])],
-                       point);
+    return barycentric(position(source[0]), position(source[1]), position(source[2]), position(vertex));
   }
 
   void fillPieces() {
+    cutEdgeOf_.assign(number_.size(), -1);
+    for (const Crossing& x : a_.surfaceCrossings.list) cutEdgeOf_[at(x.vertex - a_.firstCrack)] = x.edge;
+    out_.cutCorners.resize(m_.skin.triangles.size());
     const double body = std::accumulate(sums_.begin(), sums_.end(), 0.0,
                                         [](double sum, const SolidSums& s) { return sum + s.volume; });
     parallelFor(exec_, out_.pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -203,7 +191,7 @@ class Assembler {
     piece.crackSheet.reserve(crack);
   }
 
-  void add(std::size_t part, Piece& piece) const {
+  void add(std::size_t part, Piece& piece) {
     if (parts_->isUncut(part)) {
       for (const Index t : parts_->uncutTriangles(part)) piece.surface.push_back(a_.surface[at(t)]);
       const auto triangles = parts_->uncutTriangles(part);
@@ -212,8 +200,11 @@ class Assembler {
     } else if (parts_->isSkin(part)) {
       const std::size_t k = parts_->skinNumber(part);
       for (std::size_t t = m_.skin.begin(k); t < m_.skin.end(k); ++t) {
-        piece.surface.push_back(renumbered(m_.skin.triangles[t].corners));
-        piece.surfaceSource.push_back(m_.skin.triangles[t].source);
+        const SkinTriangle& skin = m_.skin.triangles[t];
+        for (std::size_t c = 0; c < 3; ++c)
+          out_.cutCorners[t][c] = weights(a_.surface[at(skin.source)], skin.corners[c]);
+        piece.surface.push_back(renumbered(skin.corners));
+        piece.surfaceSource.push_back(skin.source);
         piece.surfaceCut.push_back(static_cast<Index>(t));
       }
     } else if (isCrack(part)) {
@@ -249,6 +240,7 @@ class Assembler {
   std::vector<Index> partBegin_, partsOfPieces_;  ///< per piece
   std::vector<SolidSums> sums_;                   ///< per piece
   std::vector<Index> sheetNumbers_;               ///< per part of the sheets; −1 within a merged solid
+  std::vector<Index> cutEdgeOf_;                  ///< per new vertex: the cut edge that it lies on, or −1
   std::vector<Index> number_;                     ///< per new vertex: its number in the result, or −1
   std::size_t vertexCount_ = 0;
   Fragments out_;

@@ -52,6 +52,8 @@ SiteValues::SiteValues(const Partition& partition, const Exec& exec) : siteOf_(s
   for (std::size_t r = 0; r < siteOf_.size(); ++r)
     sites.col(static_cast<Eigen::Index>(r)) = partition.sites.col(siteOf_[r]) - mean;
   const Eigen::VectorXd squared = sites.colwise().squaredNorm().transpose();
+  const std::vector<double> longest = longestEdges(nodes, partition.embedding->tets->tets);
+  near_.resize(longest.size());
   values_.resize(sites.cols(), nodes.cols());
   least_.resize(static_cast<std::size_t>(nodes.cols()));
   parallelFor(exec, least_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
@@ -62,30 +64,22 @@ SiteValues::SiteValues(const Partition& partition, const Exec& exec) : siteOf_(s
     for (Eigen::Index n = first; n < first + count; ++n) {
       const double* g = values_.col(n).data();
       least_[static_cast<std::size_t>(n)] = static_cast<Index>(std::min_element(g, g + siteOf_.size()) - g);
+      findNear(static_cast<std::size_t>(n), block.col(n - first).squaredNorm(),
+               longest[static_cast<std::size_t>(n)]);
     }
   });
-  if (!exec.cancelled()) findNear(nodes, partition.embedding->tets->tets, exec);
 }
 
 /// A site that is least at a point x of a tetrahedron around node n is no farther from n than the least there
 /// by more than twice the way from n to x: |n − p| ≤ |n − x| + |x − p| ≤ |n − x| + |x − q| ≤ 2 |n − x| + |n −
 /// q|.
-void SiteValues::findNear(const Eigen::MatrixXd& nodes, std::span<const Tetra> tets, const Exec& exec) {
-  const std::vector<double> longest = longestEdges(nodes, tets);
-  const Eigen::VectorXd mean = nodes.rowwise().mean();
-  near_.resize(longest.size());
-  parallelFor(exec, longest.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const double* g = at(static_cast<Index>(n));
-      const double squared = (nodes.col(static_cast<Eigen::Index>(n)) - mean).squaredNorm();
-      const double lowest = g[least_[n]], distance = std::sqrt(std::max(0.0, squared + lowest)),
-                   way = longest[n];
-      const double highest = lowest + 4 * way * (distance + way);
-      const double slack = 1e-9 * (squared + std::abs(lowest) + std::abs(highest));
-      for (std::size_t k = 0; k < siteCount(); ++k)
-        if (g[k] <= highest + slack) near_[n].push_back(static_cast<Index>(k));
-    }
-  });
+void SiteValues::findNear(std::size_t node, double squaredNorm, double way) {
+  const double* g = at(static_cast<Index>(node));
+  const double lowest = g[least_[node]], distance = std::sqrt(std::max(0.0, squaredNorm + lowest));
+  const double highest = lowest + 4 * way * (distance + way);
+  const double slack = 1e-9 * (squaredNorm + std::abs(lowest) + std::abs(highest));
+  for (std::size_t k = 0; k < siteCount(); ++k)
+    if (g[k] <= highest + slack) near_[node].push_back(static_cast<Index>(k));
 }
 
 std::span<const Index> SiteValues::nearestList(const Tetra& nodes) const {

@@ -41,7 +41,7 @@ class SiteValues {
   void candidates(const Tetra& nodes, std::vector<Index>& out) const;
 
  private:
-  void findNear(const Eigen::MatrixXd& nodes, std::span<const Tetra> tets, const Exec& exec);
+  void findNear(std::size_t node, double squaredNorm, double way);
   std::span<const Index> nearestList(const Tetra& nodes) const;
 
   std::vector<Index> siteOf_, least_;
