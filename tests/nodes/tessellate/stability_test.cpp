@@ -160,6 +160,11 @@ constexpr TessellateParams kExact{.cells = CellMode::Exact}, kCanonical{.cells =
 constexpr TessellateParams kConforming{.cells = CellMode::Exact, .surface = SurfaceMode::Conforming};
 
 TEST(Stability, ExactCells) { run("exact", adversarialCase, kExact, 1, 110, false); }
+/// Uncut patches beside cut triangles; a pocket of skin that rounding laid flat; a void that touches the shell
+/// around it.
+TEST(Stability, SeedsOfFormerFaults) {
+  for (const std::uint64_t seed : {27, 465, 3147}) run("exact", adversarialCase, kExact, seed, seed, false);
+}
 TEST(Stability, CanonicalCells) { run("canonical", adversarialCase, kCanonical, 1, 60, false); }
 TEST(Stability, ConformingSurfaces) { run("conforming", conformingCase, kConforming, 1, 50, false); }
 TEST(SlowStability, ExactCells) { run("exact", adversarialCase, kExact, 1, 1500, true); }

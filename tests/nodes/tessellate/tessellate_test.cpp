@@ -159,6 +159,27 @@ TEST(Tessellate, OneCellIsTheUntouchedSurface) {
   EXPECT_EQ(f.counts.cutTets, 0u);
 }
 
+TEST(Tessellate, WhatPiecesSayOfThemselvesIsWhatTheirTrianglesSay) {
+  const auto tets = families::cagedInBlock(families::torusSurface(3, 1, 60, 30), 6);
+  // Cells of all sizes: a few sites far apart, and a cluster that leaves pieces of a millionth of the body.
+  std::vector<Vec3> sites = randomSites(*tets, 12, 5);
+  for (int i = 0; i < 8; ++i)
+    sites.push_back(Vec3(3, 0.99, 0) + 0.01 * Vec3(i % 2, (i / 2) % 2, i / 4) + 0.001 * Vec3(i, -i, i * i));
+  const auto f = tessellate(partitionBySites(tets, sites), {.minVolume = 0}, Exec{});
+  ASSERT_TRUE(f.ok()) << f.error().text();
+  double least = 1e300;
+  for (const Piece& piece : f->pieces) {
+    const std::span<const Triangle> lists[] = {piece.surface, piece.crack};
+    const SolidIntegrals own = integrateSolid(f->positions, lists);
+    EXPECT_NEAR(piece.volume, own.volume, 1e-10 * own.volume) << piece.name;
+    EXPECT_LT((piece.centreOfMass - own.centroid).norm(), 1e-10 * std::cbrt(own.volume)) << piece.name;
+    const Mat3 inertia = own.inertia(Material{}.density);
+    EXPECT_LT((piece.inertia - inertia).norm(), 1e-8 * inertia.norm()) << piece.name;
+    least = std::min(least, own.volume);
+  }
+  EXPECT_LT(least, 1e-5 * f->pieces.front().volume);
+}
+
 TEST(Tessellate, TwoCellsHalveABox) {
   const auto tets = families::cagedInBlock(families::boxSurface(Vec3(-1, -1, -1), Vec3(1, 1, 1), 4, 4, 4), 5);
   const Fragments f = breakAt(tets, {Vec3(-0.5, 0.1, 0), Vec3(0.5, 0.1, 0)});
