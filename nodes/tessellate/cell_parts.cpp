@@ -16,15 +16,20 @@ CellParts::CellParts(const TetMesh& tets, const Arrangement& arrangement, const 
   firstSkin_ = uncut_.size();
   firstSheet_ = firstSkin_ + meshes.skin.parts();
   nameCells();
+  TaskGroup tasks;  // most of joining is one thread's work
+  tasks.run([&] { join(isCut); });
+  sumUp(isCut);
+  tasks.wait();
+}
+
+void CellParts::join(std::span<const unsigned char> isCut) {
   connected_ = DisjointSets(size());
   std::vector<Side> sides;
   joinUncut(isCut, sides);
-  if (exec.cancelled()) return;
+  if (exec_.cancelled()) return;
   addSkinBorders(sides);
   joinSheets(sides);
   joinSides(sides);
-  if (exec.cancelled()) return;
-  sumUp(isCut);
 }
 
 std::size_t CellParts::triangleCount(std::size_t part) const {

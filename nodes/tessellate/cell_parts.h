@@ -79,6 +79,7 @@ class CellParts {
     const std::size_t patch = at(tets_.patches.patchOf[at(t)]);
     return at(partBegin_[patch] + (whole_[patch] ? 0 : partOf_[t]));
   }
+  void join(std::span<const unsigned char> isCut);
   void joinUncut(std::span<const unsigned char> isCut, std::vector<Side>& sides);
   void linkPatch(std::size_t patch, std::span<const unsigned char> isCut, PatchLinks& links) const;
   void addSkinBorders(std::vector<Side>& sides) const;

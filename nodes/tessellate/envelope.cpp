@@ -510,12 +510,14 @@ ExactSheets exactSheets(const TetMesh& tets, const SiteValues& values, const Exe
   sheets.vertices.resize(names.size());
   sheets.simplexOf.reserve(names.size());
   for (const VertexName& name : names) sheets.simplexOf.push_back(name.nodes);
+  TaskGroup tasks;
+  tasks.run([&] { sheets.connect(); });
   const double tolerance = 0x1p-52 * boxOf(tets.nodes).diagonal();
   parallelFor(exec, names.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       sheets.vertices[v] = positionOf(names[v], values, tets, tolerance);
   });
-  sheets.connect();
+  tasks.wait();
   return result;
 }
 

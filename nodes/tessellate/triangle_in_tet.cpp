@@ -193,6 +193,15 @@ void TriangleInTet::take(Index back, Index front, std::span<const SheetEdgeLine>
 
 namespace {
 
+/// Is a function certainly negative at `place` on the way from where it is a to where it is b? A first look.
+bool liesBelow(const Approx& a, const Approx& b, const Approx& place) {
+  constexpr double roundings = 0x1p-49;
+  const double way = b.value - a.value;
+  const double error =
+      a.error + b.error + place.error * std::abs(way) + roundings * (std::abs(a.value) + std::abs(b.value));
+  return a.value + place.value * way < -error;
+}
+
 /// Where on the way from a to b, values of different signs, a function vanishes: in [0, 1].
 Approx crossing(const Approx& a, const Approx& b) {
   const double from = std::abs(a.value), to = std::abs(b.value), error = std::max(a.error, b.error);
@@ -223,9 +232,9 @@ bool TriangleInTet::meets(Index back, Index front, std::span<const SheetEdgeLine
   Approx begin = 0, end = 1;  // of what is left of the chord
   for (std::size_t slot = 0; slot < lines.size(); ++slot) {
     const int function = static_cast<int>(slot);
-    const Approx own = value(function, alone);
-    Approx first = own + toNext * (value(function, next) - own),
-           second = own + toLast * (value(function, last) - own);
+    const Approx own = value(function, alone), atNext = value(function, next), atLast = value(function, last);
+    if (liesBelow(own, atNext, toNext) && liesBelow(own, atLast, toLast)) return false;
+    Approx first = own + toNext * (atNext - own), second = own + toLast * (atLast - own);
     if (turned) std::swap(first, second);
     const Approx slope = second - first;
     const auto signAt = [&](const Approx& place, const SegmentEnd& where) {
