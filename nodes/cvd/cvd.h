@@ -73,10 +73,11 @@ Eigen::VectorXd bodyCentroid(const Embedding& embedding, const WeightField& weig
 /// Sites, and every node's nearest of them, kept exact while sites are added and moved.
 ///
 /// Same labels, sites and energies to the last bit as comparing all nodes with all sites in every pass: what
-/// is left out is proved not to matter. A node whose own site stayed is compared only with sites that moved;
-/// and per (node, site) a lower bound of the distance, lessened by how far the site has moved since (Elkan,
-/// ICML 2003; widened by 1e-10 for rounding), rules out most of the others. Bounds take 8 bytes · nodes · N;
-/// beyond 256 MB they are not kept, which costs time only.
+/// is left out is proved not to matter. A cell's nodes are compared only with sites within twice the cell's
+/// radius, and where their own site stayed only with sites that moved; and per (node, site) a lower bound of
+/// the distance, lessened by how far the site has moved since (Elkan, ICML 2003; widened by 1e-10 for
+/// rounding), rules out most of the others. Bounds take 8 bytes · nodes · N; beyond 256 MB they are not kept,
+/// which costs time only.
 class Lloyd {
  public:
   /// Input that passes checkLloydInput; kept by reference.
@@ -115,8 +116,8 @@ enum class Growth {
 
 /// Draws a node by `seed` and the number of sites so far. None where every node (that weighs) has a site of
 /// its own place, or where there are as many sites as nodes.
-std::optional<Index> drawSite(const Lloyd& lloyd, const WeightField& weights, Growth growth,
-                              std::int64_t seed);
+std::optional<Index> drawSite(const Lloyd& lloyd, const Embedding& embedding, const WeightField& weights,
+                              Growth growth, std::int64_t seed);
 
 /// Adds a drawn site and runs Lloyd's iteration. False where none could be drawn: nothing has changed then.
 Result<bool> growSite(Lloyd& lloyd, const Embedding& embedding, const WeightField& weights, Growth growth,

@@ -11,11 +11,15 @@
 namespace sherd {
 namespace {
 
-constexpr std::size_t kNodeBlock = 512;
 constexpr std::size_t kMaxBounds = std::size_t{1} << 25;
 /// Wider than all rounding in distances (relative error below 1e-13 for 250 dimensions) and in the sums of
 /// moves.
 constexpr double kSlack = 1e-10;
+
+/// How many items of so many operations each are worth a task.
+std::size_t blockOf(std::size_t operations) {
+  return std::max<std::size_t>(1, (std::size_t{1} << 18) / (operations + 1));
+}
 
 }  // namespace
 
@@ -28,6 +32,10 @@ struct Lloyd::Impl {
   std::vector<double> x, p;  ///< padded coordinates of nodes and sites, one after another
   std::vector<Index> label;
   std::vector<double> distance2;  ///< per node, to its site
+  std::vector<double> limit;      ///< per node: just above that distance
+  std::vector<std::vector<Index>> members,
+      contenders;             ///< per cell, while they are needed; their memory stays
+  std::vector<Index> before;  ///< labels of the pass before
 
   std::vector<char> moved;  ///< per site: since labels were last exact
   std::vector<char> dirty;  ///< per site: its cell has changed since its centroid was taken
@@ -47,7 +55,8 @@ struct Lloyd::Impl {
         size(paddedSize(dimensions)),
         x(nodes * size, 0.0),
         label(nodes, -1),
-        distance2(nodes, std::numeric_limits<double>::infinity()) {
+        distance2(nodes, std::numeric_limits<double>::infinity()),
+        limit(distance2) {
     for (std::size_t n = 0; n < nodes; ++n)
       std::copy_n(e.coordinates.col(static_cast<Eigen::Index>(n)).data(), dimensions, &x[n * size]);
   }
@@ -55,17 +64,23 @@ struct Lloyd::Impl {
   double squaredDistanceTo(std::size_t n, std::size_t j) const {
     return squaredDistance(&x[n * size], &p[j * size], size);
   }
+  void setDistance(std::size_t n, double squared) {
+    distance2[n] = squared;
+    limit[n] = std::sqrt(squared) * (1 + kSlack);
+  }
   double* boundsOf(std::size_t n) { return &bound[n * capacity]; }
 
   void addSite(const Eigen::Ref<const Eigen::VectorXd>& position, const Exec& exec);
   void reserveBounds();
   bool assign(const Exec& exec);
-  void assignNode(std::size_t n, const std::vector<std::size_t>& movedSites);
-  void compare(std::size_t n, std::size_t j, double limit);
-  void relabel(const std::vector<Index>& before);
+  void measureMoved(const Exec& exec);
+  void findContenders(const Exec& exec);
+  void assignNode(std::size_t n);
+  void compare(std::size_t n, std::size_t j);
+  bool relabel(const std::vector<Index>& old);
   double moveToCentroids(const Exec& exec);
   bool centroid(const std::vector<Index>& members, std::vector<double>& out) const;
-  std::vector<std::vector<Index>> membersOfDirtyCells() const;
+  void listMembersOfDirtyCells();
   bool assignByFlooding(const NodeGraph& graph, const Exec& exec);
   template <class Assign>
   Result<Lloyd::End> iterate(const LloydLimits& limits, const Exec& exec, const Assign& assignLabels);
@@ -99,9 +114,9 @@ void Lloyd::Impl::addSite(const Eigen::Ref<const Eigen::VectorXd>& position, con
   assign(exec);
 }
 
-/// Compares node n with site j where the bound doesn't rule it out. `limit`: just above the distance to beat.
-inline void Lloyd::Impl::compare(std::size_t n, std::size_t j, double limit) {
-  if (bounded && boundsOf(n)[j] * (1 - kSlack) - drift[j] * (1 + kSlack) > limit) return;
+/// Compares node n with site j where the bound doesn't rule it out.
+inline void Lloyd::Impl::compare(std::size_t n, std::size_t j) {
+  if (bounded && boundsOf(n)[j] * (1 - kSlack) - drift[j] * (1 + kSlack) > limit[n]) return;
   const double d2 = squaredDistanceTo(n, j);
   const auto current = static_cast<std::size_t>(label[n]);
   const bool nearer = d2 < distance2[n] || (d2 == distance2[n] && j < current);
@@ -111,57 +126,76 @@ inline void Lloyd::Impl::compare(std::size_t n, std::size_t j, double limit) {
   }
   if (!nearer) return;
   label[n] = static_cast<Index>(j);
-  distance2[n] = d2;
+  setDistance(n, d2);
 }
 
-void Lloyd::Impl::assignNode(std::size_t n, const std::vector<std::size_t>& movedSites) {
-  const Index own = label[n];
-  if (own >= 0 && moved[at(own)]) distance2[n] = squaredDistanceTo(n, at(own));
-  double best = distance2[n];
-  double limit = std::sqrt(best) * (1 + kSlack);
-  auto visit = [&](std::size_t j) {
-    if (static_cast<Index>(j) == own) return;
-    compare(n, j, limit);
-    if (distance2[n] < best) {
-      best = distance2[n];
-      limit = std::sqrt(best) * (1 + kSlack);
+/// Of the nodes whose own site has moved, the distance to it.
+void Lloyd::Impl::measureMoved(const Exec& exec) {
+  parallelFor(exec, nodes, blockOf(size), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n)
+      if (label[n] >= 0 && moved[at(label[n])]) setDistance(n, squaredDistanceTo(n, at(label[n])));
+  });
+}
+
+/// Per cell the sites that may be nearer to one of its nodes than its own: those within twice its radius (any
+/// other is farther from every node than its own site, by the triangle inequality), and among sites that
+/// stayed none, since that comparison has been made before, with the same numbers.
+void Lloyd::Impl::findContenders(const Exec& exec) {
+  std::vector<double> radius2(siteCount, -1);
+  for (std::size_t n = 0; n < nodes; ++n)
+    if (label[n] >= 0) radius2[at(label[n])] = std::max(radius2[at(label[n])], distance2[n]);
+  contenders.resize(siteCount);
+  parallelFor(exec, siteCount, blockOf(siteCount * size), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      contenders[c].clear();
+      if (radius2[c] < 0) continue;
+      const bool all = moved[c] || allStale;
+      const double reach2 = 4 * radius2[c] * (1 + kSlack);
+      for (std::size_t j = 0; j < siteCount; ++j)
+        if (j != c && (all || moved[j]) && squaredDistance(&p[c * size], &p[j * size], size) <= reach2)
+          contenders[c].push_back(static_cast<Index>(j));
     }
-  };
-  // Between sites that stayed the comparison has been made before, with the same numbers.
-  if (own < 0 || moved[at(own)] || allStale)
-    for (std::size_t j = 0; j < siteCount; ++j) visit(j);
+  });
+}
+
+void Lloyd::Impl::assignNode(std::size_t n) {
+  const Index own = label[n];
+  if (own < 0)
+    for (std::size_t j = 0; j < siteCount; ++j) compare(n, j);
   else
-    for (const std::size_t j : movedSites) visit(j);
+    for (const Index j : contenders[at(own)]) compare(n, at(j));
 }
 
 /// Makes labels exact. Returns whether one changed.
 bool Lloyd::Impl::assign(const Exec& exec) {
-  std::vector<std::size_t> movedSites;
-  for (std::size_t j = 0; j < siteCount; ++j)
-    if (moved[j]) movedSites.push_back(j);
-  const std::vector<Index> before = label;
-  parallelFor(exec, nodes, kNodeBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) assignNode(n, movedSites);
+  before = label;
+  measureMoved(exec);
+  findContenders(exec);
+  parallelFor(exec, nodes, blockOf(16 * size), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) assignNode(n);
   });
   std::fill(moved.begin(), moved.end(), 0);
   allStale = false;
-  relabel(before);
-  return label != before;
+  return relabel(before);
 }
 
-void Lloyd::Impl::relabel(const std::vector<Index>& before) {
+/// Marks the cells that have gained or lost nodes; returns whether any has.
+bool Lloyd::Impl::relabel(const std::vector<Index>& old) {
+  bool changed = false;
   for (std::size_t n = 0; n < nodes; ++n) {
-    if (label[n] == before[n]) continue;
+    if (label[n] == old[n]) continue;
+    changed = true;
     dirty[at(label[n])] = 1;
-    if (before[n] >= 0) dirty[at(before[n])] = 1;
+    if (old[n] >= 0) dirty[at(old[n])] = 1;
   }
+  return changed;
 }
 
-std::vector<std::vector<Index>> Lloyd::Impl::membersOfDirtyCells() const {
-  std::vector<std::vector<Index>> members(siteCount);
+void Lloyd::Impl::listMembersOfDirtyCells() {
+  members.resize(siteCount);
+  for (auto& list : members) list.clear();
   for (std::size_t n = 0; n < nodes; ++n)
     if (dirty[at(label[n])]) members[at(label[n])].push_back(static_cast<Index>(n));
-  return members;
 }
 
 /// Weighted centroid, by volume where nothing weighs; false where the cell has neither.
@@ -179,9 +213,9 @@ bool Lloyd::Impl::centroid(const std::vector<Index>& members, std::vector<double
 
 /// Moves the sites of cells that changed. Returns the farthest move, m.
 double Lloyd::Impl::moveToCentroids(const Exec& exec) {
-  const auto members = membersOfDirtyCells();
+  listMembersOfDirtyCells();
   std::vector<double> step(siteCount, 0.0);
-  parallelFor(exec, siteCount, 4, [&](std::size_t begin, std::size_t end) {
+  parallelFor(exec, siteCount, blockOf(nodes * size / siteCount), [&](std::size_t begin, std::size_t end) {
     std::vector<double> target;
     for (std::size_t j = begin; j < end; ++j) {
       if (members[j].empty() || !centroid(members[j], target)) continue;
@@ -196,18 +230,17 @@ double Lloyd::Impl::moveToCentroids(const Exec& exec) {
 }
 
 bool Lloyd::Impl::assignByFlooding(const NodeGraph& graph, const Exec& exec) {
-  const std::vector<Index> before = label;
+  const std::vector<Index> own = label;
   const std::vector<Index> flooded = floodLabels({x.data(), p.data(), nodes, siteCount, size}, graph);
   assign(exec);  // the nearest sites, for nodes that no flood has reached
   for (std::size_t n = 0; n < nodes; ++n) {
     if (flooded[n] < 0) continue;
     label[n] = flooded[n];
-    distance2[n] = squaredDistanceTo(n, at(flooded[n]));
+    setDistance(n, squaredDistanceTo(n, at(flooded[n])));
   }
-  relabel(before);
   allStale = true;
   bounded = false;
-  return label != before;
+  return relabel(own);
 }
 
 template <class Assign>
