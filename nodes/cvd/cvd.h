@@ -76,7 +76,7 @@ Eigen::VectorXd bodyCentroid(const Embedding& embedding, const WeightField& weig
 /// is left out is proved not to matter. A cell's nodes are compared only with sites within twice the cell's
 /// radius, and where their own site stayed only with sites that moved; and per (node, site) a lower bound of
 /// the distance, lessened by how far the site has moved since (Elkan, ICML 2003; widened by 1e-10 for
-/// rounding), rules out most of the others. Bounds take 8 bytes · nodes · N; beyond 256 MB they are not kept,
+/// rounding), rules out most of the others. Bounds take 4 bytes · nodes · N; beyond 256 MB they are not kept,
 /// which costs time only.
 class Lloyd {
  public:
