@@ -110,8 +110,8 @@ class Assembler {
     for (std::size_t k = 0; k < sheetNumbers_.size(); ++k) {
       const std::size_t back = parts_->firstSheet() + 2 * k;
       if (!isCrack(back)) continue;
-      const auto [low, high] = std::minmax(parts_->cell(back), parts_->cell(back + 1));
-      if (const std::array<Index, 2> cells{low, high}; cells != last) {
+      const Index one = parts_->cell(back), other = parts_->cell(back + 1);
+      if (const std::array<Index, 2> cells{std::min(one, other), std::max(one, other)}; cells != last) {
         last = cells;
         number = numbers.try_emplace(cells, static_cast<Index>(numbers.size())).first->second;
       }
