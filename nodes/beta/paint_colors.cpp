@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+
+#include "beta/layers.h"
+#include "geometry/box_tree.h"
+#include "geometry/point_triangle.h"
+
+namespace sherd {
+namespace {
+
+/// Weights of a triangle's corners at one of its points; of a flat triangle, at its nearest corner.
+Vec3 weightsAt(const std::array<Vec3, 3>& corners, const Vec3& p) {
+  const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  if (normal.squaredNorm() > 0) {
+    const double b = normal.dot((p - corners[0]).cross(corners[2] - corners[0])) / normal.squaredNorm();
+    const double c = normal.dot((corners[1] - corners[0]).cross(p - corners[0])) / normal.squaredNorm();
+    return {1 - b - c, b, c};
+  }
+  Eigen::Index nearest = 0;
+  Vec3((p - corners[0]).squaredNorm(), (p - corners[1]).squaredNorm(), (p - corners[2]).squaredNorm())
+      .minCoeff(&nearest);
+  return Vec3::Unit(nearest);
+}
+
+class ColoredSurface {
+ public:
+  ColoredSurface(const TriMesh& mesh, const TriMesh::ColorSet& colors, ColorChannel channel)
+      : mesh_(mesh), colors_(colors), channel_(static_cast<Eigen::Index>(channel)) {
+    for (const Triangle& t : mesh.triangles) {
+      boxes_.emplace_back();
+      for (const Index v : t) boxes_.back().add(mesh.positions[at(v)]);
+    }
+    tree_.emplace(boxes_);
+  }
+  std::span<const Box> boxes() const { return boxes_; }
+
+  /// Triangles that may lie within `band` of a point in the box, ascending.
+  std::vector<Index> near(Box box, double band) const {
+    box.low.array() -= band;
+    box.high.array() += band;
+    std::vector<Index> found;
+    tree_->visitOverlaps(box, [&](Index t) { found.push_back(t); });
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+  /// The channel at the closest point of these triangles, in [0, 1]; nothing beyond `band`.
+  std::optional<double> channelAt(const Vec3& p, std::span<const Index> triangles, double band) const {
+    Index best = -1;
+    double least = band * band;
+    Vec3 point = Vec3::Zero();
+    for (const Index t : triangles) {
+      const Box& box = boxes_[at(t)];
+      if ((p - p.cwiseMax(box.low).cwiseMin(box.high)).squaredNorm() > least) continue;
+      const auto corners = cornersOf(t);
+      const Vec3 q = closestOnTriangle(p, corners[0], corners[1], corners[2]);
+      const double distance2 = (p - q).squaredNorm();
+      if (distance2 > least || (best >= 0 && distance2 == least)) continue;
+      best = t, least = distance2, point = q;
+    }
+    if (best < 0) return std::nullopt;
+    const Vec3 weights = weightsAt(cornersOf(best), point);
+    double value = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      value += weights[static_cast<Eigen::Index>(c)] * colors_.rgba[3 * at(best) + c][channel_];
+    return std::clamp(value, 0.0, 1.0);
+  }
+
+ private:
+  std::array<Vec3, 3> cornersOf(Index t) const {
+    const Triangle& v = mesh_.triangles[at(t)];
+    return {mesh_.positions[at(v[0])], mesh_.positions[at(v[1])], mesh_.positions[at(v[2])]};
+  }
+
+  const TriMesh& mesh_;
+  const TriMesh::ColorSet& colors_;
+  Eigen::Index channel_;
+  std::vector<Box> boxes_;
+  std::optional<BoxTree> tree_;
+};
+
+/// Blocks that the boxes touch, grown by the band.
+Blocks blocksAlong(std::span<const Box> boxes, const Lattice& lattice, double band, const Exec& exec) {
+  Blocks blocks;
+  for (const Box& box : boxes) {
+    if (blocks.tooMany() || exec.cancelled()) break;
+    Box index;
+    for (int corner = 0; corner < 8; ++corner)
+      index.add(lattice.index(Vec3(corner & 1 ? box.high.x() + band : box.low.x() - band,
+                                   corner & 2 ? box.high.y() + band : box.low.y() - band,
+                                   corner & 4 ? box.high.z() + band : box.low.z() - band)));
+    blocks.add(index.low, index.high);
+  }
+  return blocks;
+}
+
+}  // namespace
+
+Result<const TriMesh::ColorSet*> findColors(const TriMesh* mesh, const PaintBetaParams& params) {
+  if (mesh == nullptr || mesh->triangles.empty())
+    return failure("colours come from a mesh, and none is wired", "wire LoadMesh to `mesh`", "mesh");
+  if (mesh->colorSets.empty())
+    return failure(fmt::format("the mesh '{}' has no vertex colours", mesh->source),
+                   "paint some and save it in a format that keeps them: PLY, glTF, or OBJ with colours", "mesh");
+  std::string names;
+  for (const TriMesh::ColorSet& colors : mesh->colorSets) {
+    if (params.colorSet.empty() || colors.name == params.colorSet) return &colors;
+    names += (names.empty() ? "'" : ", '") + colors.name + "'";
+  }
+  return failure(fmt::format("the mesh has no colours named '{}'", params.colorSet), "it has " + names,
+                 "color_set");
+}
+
+Result<void> paintColors(Canvas& canvas, const TriMesh& mesh, const PaintBetaParams& params, double band,
+                         const Exec& exec) {
+  SHERD_ASSIGN(const TriMesh::ColorSet* colors, findColors(&mesh, params));
+  const ColoredSurface surface(mesh, *colors, params.channel);
+  const Lattice lattice = canvas.lattice();
+  const Blocks blocks = blocksAlong(surface.boxes(), lattice, band, exec);
+  const auto colorIn = [&](const openvdb::Coord& origin) -> Canvas::Edit {
+    auto near = surface.near(lattice.blockBox(origin), band);
+    return [&, near = std::move(near)](const openvdb::Coord& c, double value, bool) -> std::optional<double> {
+      const auto channel = surface.channelAt(lattice.metres(c), near, band);
+      if (!channel) return std::nullopt;
+      return blended(params.blend, value, params.low + *channel * (params.high - params.low));
+    };
+  };
+  return canvas.edit(blocks, colorIn, exec);
+}
+
+}  // namespace sherd
