@@ -37,6 +37,15 @@ Box Lattice::blockBox(const Coord& origin) const {
   return box;
 }
 
+Box Lattice::indexBox(const Box& metres) const {
+  Box box;
+  for (int corner = 0; corner < 8; ++corner)
+    box.add(index(Vec3(corner & 1 ? metres.high.x() : metres.low.x(),
+                       corner & 2 ? metres.high.y() : metres.low.y(),
+                       corner & 4 ? metres.high.z() : metres.low.z())));
+  return box;
+}
+
 void Blocks::add(const Vec3& low, const Vec3& high, const std::function<bool(const Coord&)>& isWanted) {
   // Far beyond, where blocks cannot be numbered, there are too many on the way.
   constexpr double kFarthest = 1e9;

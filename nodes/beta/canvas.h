@@ -29,6 +29,8 @@ class Lattice {
   Vec3 blockCentre(const openvdb::Coord& origin) const {
     return origin_ + axes_ * (Vec3(origin.x(), origin.y(), origin.z()) + Vec3::Constant(3.5));
   }
+  /// The box in index space around one in metres.
+  Box indexBox(const Box& metres) const;
   /// Around the centres of a block's voxels, m.
   Box blockBox(const openvdb::Coord& origin) const;
 

@@ -32,6 +32,10 @@ class ColoredSurface {
     tree_.emplace(boxes_);
   }
   std::span<const Box> boxes() const { return boxes_; }
+  std::array<Vec3, 3> cornersOf(Index t) const {
+    const Triangle& v = mesh_.triangles[at(t)];
+    return {mesh_.positions[at(v[0])], mesh_.positions[at(v[1])], mesh_.positions[at(v[2])]};
+  }
 
   /// Triangles that may lie within `band` of a point in the box, ascending.
   std::vector<Index> near(Box box, double band) const {
@@ -65,11 +69,6 @@ class ColoredSurface {
   }
 
  private:
-  std::array<Vec3, 3> cornersOf(Index t) const {
-    const Triangle& v = mesh_.triangles[at(t)];
-    return {mesh_.positions[at(v[0])], mesh_.positions[at(v[1])], mesh_.positions[at(v[2])]};
-  }
-
   const TriMesh& mesh_;
   const TriMesh::ColorSet& colors_;
   Eigen::Index channel_;
@@ -77,17 +76,20 @@ class ColoredSurface {
   std::optional<BoxTree> tree_;
 };
 
-/// Blocks that the boxes touch, grown by the band.
-Blocks blocksAlong(std::span<const Box> boxes, const Lattice& lattice, double band, const Exec& exec) {
+/// Blocks that have points within `band` of the surface.
+Blocks blocksAlong(const ColoredSurface& surface, const Lattice& lattice, double band, const Exec& exec) {
   Blocks blocks;
-  for (const Box& box : boxes) {
-    if (blocks.tooMany() || exec.cancelled()) break;
-    Box index;
-    for (int corner = 0; corner < 8; ++corner)
-      index.add(lattice.index(Vec3(corner & 1 ? box.high.x() + band : box.low.x() - band,
-                                   corner & 2 ? box.high.y() + band : box.low.y() - band,
-                                   corner & 4 ? box.high.z() + band : box.low.z() - band)));
-    blocks.add(index.low, index.high);
+  const double reach = band + lattice.blockRadius();
+  for (std::size_t t = 0; t < surface.boxes().size() && !blocks.tooMany() && !exec.cancelled(); ++t) {
+    Box box = surface.boxes()[t];
+    box.low.array() -= band;
+    box.high.array() += band;
+    const Box index = lattice.indexBox(box);
+    const auto corners = surface.cornersOf(static_cast<Index>(t));
+    blocks.add(index.low, index.high, [&](const openvdb::Coord& origin) {
+      const Vec3 centre = lattice.blockCentre(origin);
+      return (centre - closestOnTriangle(centre, corners[0], corners[1], corners[2])).norm() <= reach;
+    });
   }
   return blocks;
 }
@@ -99,7 +101,8 @@ Result<const TriMesh::ColorSet*> findColors(const TriMesh* mesh, const PaintBeta
     return failure("colours come from a mesh, and none is wired", "wire LoadMesh to `mesh`", "mesh");
   if (mesh->colorSets.empty())
     return failure(fmt::format("the mesh '{}' has no vertex colours", mesh->source),
-                   "paint some and save it in a format that keeps them: PLY, glTF, or OBJ with colours", "mesh");
+                   "paint some and save it in a format that keeps them: PLY, glTF, or OBJ with colours",
+                   "mesh");
   std::string names;
   for (const TriMesh::ColorSet& colors : mesh->colorSets) {
     if (params.colorSet.empty() || colors.name == params.colorSet) return &colors;
@@ -114,7 +117,7 @@ Result<void> paintColors(Canvas& canvas, const TriMesh& mesh, const PaintBetaPar
   SHERD_ASSIGN(const TriMesh::ColorSet* colors, findColors(&mesh, params));
   const ColoredSurface surface(mesh, *colors, params.channel);
   const Lattice lattice = canvas.lattice();
-  const Blocks blocks = blocksAlong(surface.boxes(), lattice, band, exec);
+  const Blocks blocks = blocksAlong(surface, lattice, band, exec);
   const auto colorIn = [&](const openvdb::Coord& origin) -> Canvas::Edit {
     auto near = surface.near(lattice.blockBox(origin), band);
     return [&, near = std::move(near)](const openvdb::Coord& c, double value, bool) -> std::optional<double> {

@@ -41,12 +41,7 @@ class ValueNoise {
 /// Blocks that the mesh's solid touches.
 Blocks blocksOfSolid(const TriMesh& mesh, const Lattice& lattice, const Exec& exec) {
   const SurfaceTree surface(mesh.positions, mesh.triangles);
-  const Box box = boxOf(mesh.positions);
-  Box index;
-  for (int corner = 0; corner < 8; ++corner)
-    index.add(
-        lattice.index(Vec3(corner & 1 ? box.high.x() : box.low.x(), corner & 2 ? box.high.y() : box.low.y(),
-                           corner & 4 ? box.high.z() : box.low.z())));
+  const Box index = lattice.indexBox(boxOf(mesh.positions));
   Blocks blocks;
   blocks.add(index.low, index.high, [&](const openvdb::Coord& origin) {
     if (exec.cancelled()) return false;

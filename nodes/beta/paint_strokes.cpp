@@ -46,21 +46,11 @@ Box grown(Box box, double by) {
   return box;
 }
 
-/// The box in index space around one in metres.
-Box indexBox(const Lattice& lattice, const Box& box) {
-  Box result;
-  for (int corner = 0; corner < 8; ++corner)
-    result.add(
-        lattice.index(Vec3(corner & 1 ? box.high.x() : box.low.x(), corner & 2 ? box.high.y() : box.low.y(),
-                           corner & 4 ? box.high.z() : box.low.z())));
-  return result;
-}
-
 Blocks blocksNear(const Path& path, const Lattice& lattice, double radius, const Exec& exec) {
   Blocks blocks;
   const double reach = radius + lattice.blockRadius();
   for (std::size_t piece = 0; piece < path.pieces.size() && !blocks.tooMany() && !exec.cancelled(); ++piece) {
-    const Box box = indexBox(lattice, grown(path.boxes[piece], radius));
+    const Box box = lattice.indexBox(grown(path.boxes[piece], radius));
     blocks.add(box.low, box.high, [&](const openvdb::Coord& origin) {
       return path.distance(piece, lattice.blockCentre(origin)) <= reach;
     });
