@@ -109,6 +109,16 @@ double startValue(const Inputs& in, const Params& params) {
   return params.background;
 }
 
+/// OpenVDB takes small scales for none.
+Result<openvdb::math::Transform::Ptr> cubesOf(double edge) {
+  try {
+    return openvdb::math::Transform::createLinearTransform(edge);
+  } catch (const openvdb::ArithmeticError&) {
+    return failure(fmt::format("voxels of {:.3g} units of the mesh are too small for OpenVDB", edge),
+                   "make `voxel` larger, or choose a smaller `unit` in LoadMesh", "voxel");
+  }
+}
+
 /// The field before anything is painted, on the lattice that all of it will have.
 Result<Canvas> blankCanvas(const Inputs& in, const Params& params, double voxel) {
   Canvas canvas;
@@ -122,9 +132,8 @@ Result<Canvas> blankCanvas(const Inputs& in, const Params& params, double voxel)
     } else {
       if (in.mesh != nullptr) canvas.frame = in.mesh->frame;
       const double edge = voxel / canvas.frame.metresPerUnit;
-      if (!(edge > 1e-30 && edge < 1e30))
-        return failure("voxels can't be this size", "give an edge in metres", "voxel");
-      canvas.grid->setTransform(openvdb::math::Transform::createLinearTransform(edge));
+      SHERD_ASSIGN(const openvdb::math::Transform::Ptr cubes, cubesOf(edge));
+      canvas.grid->setTransform(cubes);
     }
   }
   if (!canvas.grid->transform().isLinear())

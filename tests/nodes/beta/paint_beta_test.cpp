@@ -27,6 +27,7 @@ ScalarGrid painted(const Params& params, const PaintBetaInputs& inputs = {}) {
 
 /// The value at the voxel nearest to a point, without interpolation.
 double voxelAt(const ScalarGrid& grid, const Vec3& p) {
+  if (grid.isConstant()) return sampleAt(grid, p);
   const Vec3 q = grid.impl().frame.toFile(p);
   const openvdb::Vec3d index = voxelsOf(grid).worldToIndex(openvdb::Vec3d(q.x(), q.y(), q.z()));
   return static_cast<double>(voxelsOf(grid).tree().getValue(openvdb::Coord::round(index)));
@@ -229,10 +230,12 @@ TEST(PaintBeta, AShellInAThousandCubedCostsItsVoxels) {
 TEST(PaintBeta, TooManyVoxelsAreRefusedBeforeTheyAreMade) {
   Params params;
   params.strokes = {dab(kZero, 1, 5)};
-  for (const double voxel : {1e-4, 1e-7, 1e-12}) {
+  for (const double voxel : {1e-4, 1e-6}) {
     params.voxel = voxel;
     EXPECT_TRUE(says(errorOf(paint(params)), "voxel: painting this with voxels of"));
   }
+  params.voxel = 1e-20;
+  EXPECT_TRUE(says(errorOf(paint(params)), "voxel: voxels of 1e-20 units of the mesh are too small"));
   params.voxel = 0;
   params.strokes = {{{{0, 0, 0}, {1e9, 0, 0}}, 0.1, 0.5, 2, Blend::Replace}};
   EXPECT_TRUE(says(errorOf(paint(params)), "strokes: stroke 1 is more than"));

@@ -45,9 +45,9 @@ TEST(SlowVdbTools, PrintNamesTypesSizesAndTransforms) {
     const bool isHalf = precision == WriteVdbParams::Precision::Half;
     EXPECT_TRUE(says(brief, "beta"));
     EXPECT_TRUE(says(brief, "mask"));
-    EXPECT_TRUE(says(brief, isHalf ? "half" : "float"));
+    EXPECT_TRUE(says(brief, "float"));
     EXPECT_TRUE(says(all, "Background value: 0.5"));
-    EXPECT_TRUE(says(all, "voxel size: [0.25, 0.25, 0.25]"));
+    EXPECT_TRUE(says(all, "voxel size: 0.25"));
     EXPECT_TRUE(says(all, std::to_string(voxelsOf(grids[0]).activeVoxelCount())));
     EXPECT_TRUE(says(all, isHalf ? "is_saved_as_half_float: true" : "is_saved_as_half_float: false"));
   }
