@@ -58,8 +58,8 @@ Result<void> checkSource(const Inputs& in, const Params& params) {
     const auto colors = findColors(in.mesh, params);
     if (!colors.ok()) return colors.error();
   }
-  const bool hasMesh = in.mesh != nullptr && !in.mesh->triangles.empty();
-  if (params.source == PaintSource::Noise && !hasMesh && !isPainted(in.grid) && !isPainted(in.other))
+  if (params.source == PaintSource::Noise && in.mesh == nullptr && !isPainted(in.grid) &&
+      !isPainted(in.other))
     return failure("there is nothing that noise could lie in", "wire a mesh, or a grid that is painted",
                    "mesh");
   return {};
@@ -72,7 +72,7 @@ struct Lengths {
 
 /// Of the mesh, or of what is painted already.
 double extentOf(const Inputs& in) {
-  if (in.mesh != nullptr && !in.mesh->triangles.empty()) return boxOf(in.mesh->positions).diagonal();
+  if (in.mesh != nullptr) return boxOf(in.mesh->positions).diagonal();
   Box box;
   for (const ScalarGrid* grid : {in.grid, in.other}) {
     if (!isPainted(grid)) continue;
@@ -200,7 +200,9 @@ bool changesNothing(const Inputs& in, const Params& params, const std::string& n
 
 }  // namespace
 
-Result<ScalarGrid> paintBeta(const PaintBetaInputs& in, const PaintBetaParams& params, const Exec& exec) {
+Result<ScalarGrid> paintBeta(const PaintBetaInputs& inputs, const PaintBetaParams& params, const Exec& exec) {
+  PaintBetaInputs in = inputs;
+  if (in.mesh != nullptr && in.mesh->triangles.empty()) in.mesh = nullptr;
   SHERD_CHECK(checkParams(params));
   SHERD_CHECK(checkSource(in, params));
   std::string name = params.name;

@@ -45,10 +45,10 @@ struct PaintBetaParams {
   PaintSource source = PaintSource::None;
   double low = 0.5, high = 2;  ///< what a channel or noise of 0 and of 1 stand for; what a threshold leaves
   ColorChannel channel = ColorChannel::Red;
-  std::string colorSet;    ///< by name; empty: the first
-  double band = 0;         ///< m, how far from the surface colours reach; 0: 1/32 of the mesh's diagonal
-  double noiseSize = 0;    ///< m, between independent values; 0: 1/8 of the diagonal of what it covers
-  std::uint64_t seed = 1;  ///< of the noise
+  std::string colorSet;   ///< by name; empty: the first
+  double band = 0;        ///< m, how far from the surface colours reach; 0: 1/32 of the mesh's diagonal
+  double noiseSize = 0;   ///< m, between independent values; 0: 1/8 of the diagonal of what it covers
+  std::int64_t seed = 1;  ///< of the noise
 
   double smooth = 0;     ///< m, standard deviation of a Gaussian; 0: none
   double threshold = 0;  ///< values from here on become `high`, those below `low`; 0: none

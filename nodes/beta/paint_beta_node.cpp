@@ -42,8 +42,7 @@ void addSource(NodeBuilder<Params>& node) {
               {.unit = "m",
                .min = 0,
                .help = "how coarse noise is; 0: an eighth of the diagonal of what it covers"})
-      .integer("seed", &Params::seed,
-               {.min = 0, .max = 9007199254740992, .help = "another seed gives other noise"});
+      .integer("seed", &Params::seed, {.unit = "", .help = "another seed gives other noise"});
 }
 
 }  // namespace

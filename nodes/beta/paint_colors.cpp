@@ -32,19 +32,24 @@ class ColoredSurface {
     tree_.emplace(boxes_);
   }
   std::span<const Box> boxes() const { return boxes_; }
-  std::array<Vec3, 3> cornersOf(Index t) const {
-    const Triangle& v = mesh_.triangles[at(t)];
-    return {mesh_.positions[at(v[0])], mesh_.positions[at(v[1])], mesh_.positions[at(v[2])]};
-  }
 
-  /// Triangles that may lie within `band` of a point in the box, ascending.
-  std::vector<Index> near(Box box, double band) const {
+  /// Triangles that may lie within `band` of a point in the block, ascending.
+  std::vector<Index> near(const openvdb::Coord& block, const Lattice& lattice, double band) const {
+    const double reach = band + lattice.blockRadius();
+    const Vec3 centre = lattice.blockCentre(block);
+    Box box = lattice.blockBox(block);
     box.low.array() -= band;
     box.high.array() += band;
     std::vector<Index> found;
-    tree_->visitOverlaps(box, [&](Index t) { found.push_back(t); });
+    tree_->visitOverlaps(box, [&](Index t) {
+      if (distance(centre, t) <= reach) found.push_back(t);
+    });
     std::sort(found.begin(), found.end());
     return found;
+  }
+  double distance(const Vec3& p, Index t) const {
+    const auto corners = cornersOf(t);
+    return (p - closestOnTriangle(p, corners[0], corners[1], corners[2])).norm();
   }
   /// The channel at the closest point of these triangles, in [0, 1]; nothing beyond `band`.
   std::optional<double> channelAt(const Vec3& p, std::span<const Index> triangles, double band) const {
@@ -69,6 +74,11 @@ class ColoredSurface {
   }
 
  private:
+  std::array<Vec3, 3> cornersOf(Index t) const {
+    const Triangle& v = mesh_.triangles[at(t)];
+    return {mesh_.positions[at(v[0])], mesh_.positions[at(v[1])], mesh_.positions[at(v[2])]};
+  }
+
   const TriMesh& mesh_;
   const TriMesh::ColorSet& colors_;
   Eigen::Index channel_;
@@ -85,10 +95,8 @@ Blocks blocksAlong(const ColoredSurface& surface, const Lattice& lattice, double
     box.low.array() -= band;
     box.high.array() += band;
     const Box index = lattice.indexBox(box);
-    const auto corners = surface.cornersOf(static_cast<Index>(t));
     blocks.add(index.low, index.high, [&](const openvdb::Coord& origin) {
-      const Vec3 centre = lattice.blockCentre(origin);
-      return (centre - closestOnTriangle(centre, corners[0], corners[1], corners[2])).norm() <= reach;
+      return surface.distance(lattice.blockCentre(origin), static_cast<Index>(t)) <= reach;
     });
   }
   return blocks;
@@ -97,7 +105,7 @@ Blocks blocksAlong(const ColoredSurface& surface, const Lattice& lattice, double
 }  // namespace
 
 Result<const TriMesh::ColorSet*> findColors(const TriMesh* mesh, const PaintBetaParams& params) {
-  if (mesh == nullptr || mesh->triangles.empty())
+  if (mesh == nullptr)
     return failure("colours come from a mesh, and none is wired", "wire LoadMesh to `mesh`", "mesh");
   if (mesh->colorSets.empty())
     return failure(fmt::format("the mesh '{}' has no vertex colours", mesh->source),
@@ -119,7 +127,7 @@ Result<void> paintColors(Canvas& canvas, const TriMesh& mesh, const PaintBetaPar
   const Lattice lattice = canvas.lattice();
   const Blocks blocks = blocksAlong(surface, lattice, band, exec);
   const auto colorIn = [&](const openvdb::Coord& origin) -> Canvas::Edit {
-    auto near = surface.near(lattice.blockBox(origin), band);
+    auto near = surface.near(origin, lattice, band);
     return [&, near = std::move(near)](const openvdb::Coord& c, double value, bool) -> std::optional<double> {
       const auto channel = surface.channelAt(lattice.metres(c), near, band);
       if (!channel) return std::nullopt;

@@ -61,7 +61,7 @@ Result<void> paintNoise(Canvas& canvas, const TriMesh* mesh, const PaintBetaPara
     blocks = blocksOfSolid(*mesh, lattice, exec);
   else
     blocks.addActive(canvas.grid->tree());
-  const ValueNoise noise(params.seed, noiseSize);
+  const ValueNoise noise(static_cast<std::uint64_t>(params.seed), noiseSize);
   const auto noiseIn = [&](const openvdb::Coord&) -> Canvas::Edit {
     return [&](const openvdb::Coord& c, double value, bool isOn) -> std::optional<double> {
       if (mesh == nullptr && !isOn) return std::nullopt;

@@ -32,6 +32,7 @@ NodeType writeVdbNode() {
               {.unit = "m", .min = 0, .help = "length of one unit in the file; 0: as it came"})
       .output<std::string>("file", "path of the file")
       .writesFiles()
+      .uninterruptible("OpenVDB's Archive::write", 1300)  // of 9 million voxels
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         std::vector<ScalarGrid> grids;
         for (const char* port : {"grid", "grid_2", "grid_3", "grid_4"})

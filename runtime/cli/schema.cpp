@@ -213,7 +213,7 @@ Json definitions() {
   all["name"] = {{"type", "string"}, {"pattern", kName}};
   all["link"] = linkSchema("\"node\" or \"node.port\"");
   all["paramValue"] = {{"type", {"number", "string", "boolean", "array"}},
-                       {"items", {{"type", {"number", "string"}}}}};
+                       {"items", {{"type", {"number", "string", "array", "object"}}}}};
   all["variable"] = {{"type", {"number", "string", "boolean", "array"}}};
   all["vars"] =
       described("values to override with --var, used as \"${name}\"", namedObject(reference("variable")));

@@ -102,7 +102,8 @@ inline ContractExceptions packExceptions() {
   // How much memory there is decides what is kept at once, not what comes out.
   exceptions.files = {"/proc/meminfo"};
   // Small files are copied before they are read, which must not change them.
-  exceptions.variables = {"OPENVDB_DELAYED_LOAD_COPY_MAX_BYTES"};
+  // And Blosc only speaks more when that one is set.
+  exceptions.variables = {"OPENVDB_DELAYED_LOAD_COPY_MAX_BYTES", "BLOSC_WARN"};
   return exceptions;
 }
 

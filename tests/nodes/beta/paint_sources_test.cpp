@@ -143,6 +143,8 @@ TEST(PaintNoise, WithoutAMeshLiesWhereTheGridIsPainted) {
   params.source = PaintSource::Noise;
   EXPECT_TRUE(voxelsOf(painted(params, {&grid, nullptr, nullptr})).tree().hasSameTopology(start->tree()));
   EXPECT_TRUE(says(errorOf(params, {}), "mesh: there is nothing that noise could lie in"));
+  const TriMesh empty;
+  EXPECT_TRUE(says(errorOf(params, {nullptr, nullptr, &empty}), "mesh: there is nothing"));
 }
 
 class Combined : public testing::TestWithParam<Blend> {};
