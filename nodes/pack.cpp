@@ -9,6 +9,8 @@ NodeType tetrahedralizeNode();
 NodeType embedNode();
 NodeType simulateNode();
 NodeType readVdbNode();
+NodeType paintBetaNode();
+NodeType writeVdbNode();
 NodeType weightsNode();
 NodeType predictDegreeNode();
 NodeType cvdNode();
@@ -24,7 +26,8 @@ NodeType contactSheetNode();
 }  // namespace sherd
 
 SHERD_NODE_PACK(sherd::loadMeshNode, sherd::repairNode, sherd::tetrahedralizeNode, sherd::embedNode,
-                sherd::simulateNode, sherd::readVdbNode, sherd::weightsNode, sherd::predictDegreeNode,
-                sherd::cvdNode, sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
-                sherd::exportCrackSurfaceNode, sherd::exportPiecesNode, sherd::exportProxiesNode,
-                sherd::previewNode, sherd::contactSheetNode)
+                sherd::simulateNode, sherd::readVdbNode, sherd::paintBetaNode, sherd::writeVdbNode,
+                sherd::weightsNode, sherd::predictDegreeNode, sherd::cvdNode, sherd::tessellateNode,
+                sherd::selectPieceNode, sherd::convexProxiesNode, sherd::exportCrackSurfaceNode,
+                sherd::exportPiecesNode, sherd::exportProxiesNode, sherd::previewNode,
+                sherd::contactSheetNode)

@@ -84,6 +84,12 @@ Result<void> checkFinite(const openvdb::FloatGrid& grid, const Listed& listed, c
   return failure(where + first, "repaint it there or deactivate these voxels", "file");
 }
 
+/// A level set's inside is inactive, of −background; active, it counts. Where it is a tile it stays one.
+void keepInside(openvdb::FloatGrid& grid) {
+  for (auto value = grid.beginValueOff(); value; ++value)
+    if (*value < 0) value.setActiveState(true);
+}
+
 Result<ScalarGrid> read(const ReadVdbParams& params, const Exec& exec) {
   openvdb::io::File file(params.file);
   file.open(/*delayLoad=*/false);
@@ -94,6 +100,7 @@ Result<ScalarGrid> read(const ReadVdbParams& params, const Exec& exec) {
   if (!grid)
     return failure("'" + params.file + "' is damaged: its directory and its grids disagree", {}, "file");
   SHERD_CHECK(checkFinite(*grid, chosen, params));
+  if (grid->getGridClass() == openvdb::GRID_LEVEL_SET) keepInside(*grid);
   return scalarGridOf(grid, chosen.name, FileFrame{params.unit, params.up});
 }
 

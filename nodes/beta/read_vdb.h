@@ -1,7 +1,8 @@
 // Reads a painted scalar field (toughness β and the like) from an OpenVDB file.
 //
 // Accepted are grids of float, of float stored as half, and of double (rounded to float: seven digits are
-// more than a painted field holds). Outside of its active voxels a grid has its background value.
+// more than a painted field holds). Outside of its active voxels a grid has its background value;
+// only a level set's inside, which is inactive too, keeps the values that the file has for it.
 #pragma once
 
 #include <string>

@@ -17,6 +17,7 @@ NodeType readVdbNode() {
       .choice("up", &Params::up, {{"y", FileFrame::Up::Y}, {"z", FileFrame::Up::Z}},
               "the axis that points up in the grid's space; the same as the mesh's")
       .output<ScalarGrid>("grid", "the field; its background outside of the painted voxels")
+      .implementation(2)
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         SHERD_ASSIGN(ScalarGrid grid, readVdb(params, io.exec()));
         io.out("grid", std::move(grid));

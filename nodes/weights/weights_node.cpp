@@ -8,9 +8,10 @@ NodeType weightsNode() {
              "Weights", 1,
              "Turns strain energy and painted toughness into the weights that decide where it breaks.")
       .input<EnergyField>("energy", "strain energy, from Simulate")
-      .optionalInput<ScalarGrid>("beta",
-                                 "painted fragility β, from ReadVDB: 1 leaves as is, 4 breaks like four "
-                                 "times the energy, 0 never breaks; left open: 1 everywhere")
+      .optionalInput<ScalarGrid>(
+          "beta",
+          "painted fragility β, from PaintBeta or ReadVDB: 1 leaves as is, 4 breaks like four "
+          "times the energy, 0 never breaks; left open: 1 everywhere")
       .number(
           "alpha", &WeightsParams::alpha,
           {.unit = "",

@@ -16,7 +16,7 @@ the top of the tree:
 
     SHERD_NODE_PATH= build/bin/sherd nodes --markdown > nodes/README.md
 
-Any parameter but a list of three numbers can be wired in `in` instead of being set in `params`. Paths are relative to
+Any parameter but a list can be wired in `in` instead of being set in `params`. Paths are relative to
 the graph file.
 
 )";

@@ -87,6 +87,7 @@ std::string versioned(const NodeType& type) { return type.name + '@' + std::to_s
 
 std::string defaultText(const ParamInfo& info) {
   if (info.required) return "required";
+  if (info.kind == ParamKind::List) return std::get<std::string>(info.fallback);
   std::string text = paramText(info.fallback);
   if (!info.unit.empty()) text += ' ' + info.unit;
   return text;

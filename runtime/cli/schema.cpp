@@ -73,6 +73,8 @@ Json kindSchema(const ParamInfo& info) {
       schema.update({{"items", numberSchema("number", info)}, {"minItems", 3}, {"maxItems", 3}});
       return schema;
     }
+    case ParamKind::List:
+      return orVariable("array");
     case ParamKind::Choice:
       return {{"type", "string"}, {"anyOf", {{{"enum", info.choices}}, {{"pattern", kSomeVariable}}}}};
     default:
@@ -87,7 +89,9 @@ Json paramSchema(const ParamInfo& info) {
   about += info.required ? ", required)" : ", default: " + defaultText(info) + ')';
   Json schema = described(about, kindSchema(info));
   const auto* text = std::get_if<std::string>(&info.fallback);
-  if (!info.required && (text == nullptr || !text->empty()))
+  if (info.kind == ParamKind::List)
+    schema["default"] = Json::parse(*text);
+  else if (!info.required && (text == nullptr || !text->empty()))
     std::visit([&](const auto& value) { schema["default"] = value; }, info.fallback);
   return schema;
 }
@@ -209,7 +213,7 @@ Json definitions() {
   all["name"] = {{"type", "string"}, {"pattern", kName}};
   all["link"] = linkSchema("\"node\" or \"node.port\"");
   all["paramValue"] = {{"type", {"number", "string", "boolean", "array"}},
-                       {"items", {{"type", {"number", "string"}}}}};
+                       {"items", {{"type", {"number", "string", "array", "object"}}}}};
   all["variable"] = {{"type", {"number", "string", "boolean", "array"}}};
   all["vars"] =
       described("values to override with --var, used as \"${name}\"", namedObject(reference("variable")));

@@ -241,7 +241,9 @@ class Checker {
     if (acceptsWire(param, output->type)) {
       node.wiredParams.push_back({to, from, placeOf(*output, from)});
     } else if (wireType(param.kind).empty()) {
-      diagnostics_.add(link->origin, where, "a parameter of " + kindText(param.kind) + " can't be wired",
+      diagnostics_.add(link->origin, where,
+                       (param.kind == ParamKind::List ? "a list" : "a parameter of " + kindText(param.kind)) +
+                           " can't be wired",
                        "set it in \"params\"");
     } else {
       complainOfType(*link, from, *output, where, wireType(param.kind));

@@ -47,6 +47,7 @@ enum class ParamKind {
   InputFile,        ///< a file that is read: resolved to an absolute path; its content enters the key
   OutputFile,       ///< a file that is written: resolved to an absolute path
   OutputDirectory,  ///< a directory that is written into: resolved to an absolute path
+  List,             ///< a list of what the node itself knows; its value is the JSON text, on one line
 };
 
 struct ParamInfo {
@@ -60,6 +61,7 @@ struct ParamInfo {
   bool required = false;                  ///< has no default: must be set or wired
   std::vector<std::string> choices;
   std::string help;
+  std::function<Result<void>(const std::string& json)> accepts;  ///< of a List: what is wrong with its items
 };
 
 struct PortInfo {
@@ -274,6 +276,19 @@ class NodeBuilder {
   }
   NodeBuilder& outputDirectory(std::string name, std::string P::*member, std::string help) {
     return addText(std::move(name), ParamKind::OutputDirectory, member, std::move(help));
+  }
+  /// A list whose items `read` turns from JSON into what the node works with; empty by default. What it has
+  /// to say of wrong ones is said by `check` already.
+  template <class T>
+  NodeBuilder& list(std::string name, std::vector<T> P::*member,
+                    Result<std::vector<T>> (*read)(const std::string& json), std::string help) {
+    add(std::move(name), ParamKind::List, std::string("[]"), {.unit = {}, .help = std::move(help)},
+        [member, read](P& p, const ParamValue& v) { p.*member = read(std::get<std::string>(v)).value(); });
+    type_.params.back().accepts = [read](const std::string& json) -> Result<void> {
+      const auto items = read(json);
+      return items.ok() ? Result<void>{} : items.error();
+    };
+    return *this;
   }
   /// One of a list of words, each standing for a value of the enumeration E.
   template <class E>

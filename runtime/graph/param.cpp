@@ -70,6 +70,16 @@ Result<ParamValue> fromList(const ParamInfo& info, const JsonValue& value) {
   return ParamValue(std::move(numbers));
 }
 
+Result<ParamValue> fromItems(const ParamInfo& info, const JsonValue& value) {
+  std::string json = jsonText(value);
+  if (json.find("\\u0000") != std::string::npos)
+    return wrong("a text in it holds a zero byte", "leave it out");
+  if (info.accepts)
+    if (const auto accepted = info.accepts(json); !accepted.ok())
+      return wrong(accepted.error().what, accepted.error().remedy);
+  return ParamValue(std::move(json));
+}
+
 }  // namespace
 
 Result<ParamValue> readParam(const ParamInfo& info, const JsonValue& value,
@@ -86,6 +96,9 @@ Result<ParamValue> readParam(const ParamInfo& info, const JsonValue& value,
       break;
     case ParamKind::Vector3:
       if (value.kind == Kind::Array) return fromList(info, value);
+      break;
+    case ParamKind::List:
+      if (value.kind == Kind::Array) return fromItems(info, value);
       break;
     default:
       if (value.kind == Kind::String) return fromText(info, value.text, base);
@@ -107,6 +120,7 @@ Result<ParamValue> readParam(const ParamInfo& info, const Value& value, const st
         return fromNumber(info, *number);
       break;
     case ParamKind::Vector3:
+    case ParamKind::List:
       break;
     default:
       if (const auto text = value.as<std::string>()) return fromText(info, *text, base);
@@ -132,6 +146,7 @@ std::string wireType(ParamKind kind) {
     case ParamKind::Number:
       return ScalarName<double>::value;
     case ParamKind::Vector3:
+    case ParamKind::List:
       return {};
     default:
       return ScalarName<std::string>::value;
@@ -179,6 +194,8 @@ std::string kindText(ParamKind kind) {
       return "file to write";
     case ParamKind::OutputDirectory:
       return "directory to write into";
+    case ParamKind::List:
+      return "list";
   }
   return {};
 }
@@ -202,6 +219,9 @@ std::string expectation(const ParamInfo& info) {
       break;
     case ParamKind::Vector3:
       text = "a list of three numbers";
+      break;
+    case ParamKind::List:
+      text = "a list";
       break;
     case ParamKind::Integer:
       text = "an integer";

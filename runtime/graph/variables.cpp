@@ -156,6 +156,12 @@ std::optional<Expanded> Variables::expand(const JsonValue& value, const std::str
     item = std::move(expanded->value);
     result.reads |= expanded->reads;
   }
+  for (JsonMember& member : result.value.members) {
+    auto expanded = expand(member.value, where, scope);
+    if (!expanded) return std::nullopt;
+    member.value = std::move(expanded->value);
+    result.reads |= expanded->reads;
+  }
   return result;
 }
 

@@ -86,12 +86,14 @@ inline ContractExceptions packExceptions() {
       "Embed.dimensions", "PredictDegree.degree", "PredictDegree.max_degree", "Preview.samples",
       "Repair.resolution", "SelectPiece.number", "Tetrahedralize.tets",
       // seeds
-      "CVD.seed", "PredictDegree.seed",
+      "CVD.seed", "PaintBeta.seed", "PredictDegree.seed",
       // shares and ratios of equal quantities
       "ConvexProxies.tolerance", "CVD.tolerance", "Embed.tolerance", "Embed.time", "Preview.explode",
       "Repair.crack", "Repair.leaf", "Repair.small_hole", "Simulate.ball_target", "Simulate.friction",
       "Simulate.obstacle_poisson", "SelectPiece.poisson", "Simulate.poisson", "Simulate.restitution",
       "Tessellate.min_volume",
+      // values of whatever is painted
+      "PaintBeta.background", "PaintBeta.high", "PaintBeta.low", "PaintBeta.threshold",
       // an exponent
       "Weights.alpha",
       // a direction
@@ -100,7 +102,8 @@ inline ContractExceptions packExceptions() {
   // How much memory there is decides what is kept at once, not what comes out.
   exceptions.files = {"/proc/meminfo"};
   // Small files are copied before they are read, which must not change them.
-  exceptions.variables = {"OPENVDB_DELAYED_LOAD_COPY_MAX_BYTES"};
+  // And Blosc only speaks more when that one is set.
+  exceptions.variables = {"OPENVDB_DELAYED_LOAD_COPY_MAX_BYTES", "BLOSC_WARN"};
   return exceptions;
 }
 

@@ -87,6 +87,15 @@ RIGHT = {
     "one frame": {"frames": 1001},
     "frames one by one": {"frames": "1,5,8-10"},
     "a wedge": {"wedge": {"height": [1, 1.5, 2]}},
+    "a list of objects": {
+        "nodes.paint": {
+            "type": "PaintBeta@1",
+            "params": {"strokes": [{"points": [[0, 0, 0], [1, 0, "${height}"]], "radius": 0.1, "value": "${height}"}]},
+        }
+    },
+    "a variable for a list of objects": {
+        "vars.strokes": [], "nodes.paint": {"type": "PaintBeta@1", "params": {"strokes": "${strokes}"}},
+    },
     "a subgraph": with_fill(),
     "a subgraph in few words": with_fill(
         help=GONE, vars=GONE, inputs={"mesh": "Mesh"}, outputs={"tets": "cage"},
@@ -111,6 +120,7 @@ WRONG = {
     "a list that is too short": ({"nodes.hit.params.orientation": [25, 0]}, "three numbers"),
     "a list of words": ({"nodes.hit.params.orientation": ["x", "y", "z"]}, "three numbers"),
     "a number for a list": ({"nodes.hit.params.orientation": 25}, "three numbers"),
+    "a number for a list of objects": ({"nodes.paint": {"type": "PaintBeta@1", "params": {"strokes": 3}}}, "a list"),
     "a parameter that is null": ({"nodes.hit.params.drop_height": None}, "leave the parameter out"),
     "an empty file name": ({"nodes.mesh.params.file": ""}, "this is empty"),
     "a variable that isn't closed": ({"nodes.hit.params.drop_height": "${height"}, "${"),

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/rng.h"
+#include "graph/param.h"
 #include "graph/suggest.h"
 #include "runtime/made_up.h"
 
@@ -154,6 +155,26 @@ TEST(GraphCheck, TellsOfParameters) {
   expectGood(
       R"({"type": "Kinds@2", "params": {"flag": true, "count": 10, "length": 0.5, "direction": [0, -1, 1],
                  "text": "x", "mode": "exact"}})");
+}
+
+TEST(GraphCheck, AListKeepsItsItemsAsJsonAndSaysWhatIsWrongWithThem) {
+  ParamInfo info;
+  info.name = "items";
+  info.kind = ParamKind::List;
+  info.fallback = std::string("[]");
+  info.accepts = [](const std::string& json) -> Result<void> {
+    return json.find("bad") == std::string::npos ? Result<void>{} : failure("item 1 is bad", "make it good");
+  };
+  const auto read = [&](const std::string& typed) {
+    return readParam(info, parseTyped(typed, std::make_shared<const Source>()), "/");
+  };
+  EXPECT_EQ(std::get<std::string>(*read(R"([{"a":1.50,"b":["x"]}, 2,])")),
+            R"([{ "a": 1.5, "b": ["x"] }, 2])");
+  EXPECT_EQ(read("[\"bad\"]").error().text(), "item 1 is bad; make it good");
+  EXPECT_EQ(read("{}").error().text(), "this is an object; it would have to be a list");
+  EXPECT_EQ(read("null").error().text(), "this is null; leave the parameter out for its default");
+  EXPECT_EQ(read(R"(["\u0000"])").error().text(), "a text in it holds a zero byte; leave it out");
+  EXPECT_EQ(wireType(ParamKind::List), "");
 }
 
 TEST(GraphCheck, ParametersMayBeWired) {

@@ -174,6 +174,8 @@ std::vector<ParamValue> otherValues(const ParamInfo& info) {
       return values;
     case ParamKind::Text:
       return {std::get<std::string>(info.fallback) + "a", std::get<std::string>(info.fallback) + "b"};
+    case ParamKind::List:
+      return {std::string("[1]"), std::string("[2]")};
     case ParamKind::OutputFile:
     case ParamKind::OutputDirectory:
       return {std::string("/out/a"), std::string("/out/b")};
@@ -269,6 +271,8 @@ std::vector<std::string> wrongKinds(const ParamInfo& info) {
       return {"null", "true", "\"one\"", "[1]"};
     case ParamKind::Vector3:
       return {"null", "1", "[0, 0]", "[0, 0, 0, 0]", "[0, 0, \"one\"]"};
+    case ParamKind::List:
+      return {"null", "1", "true", "\"one\"", "{}", "[null]"};
     case ParamKind::Choice:
       return {"null", "1", "\"no such word\""};
     case ParamKind::Text:
