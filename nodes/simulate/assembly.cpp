@@ -130,6 +130,7 @@ std::vector<double> stiffnessShares(const Elements& elements) {
       all[at(n)] += tetVolume(mesh, t);
     }
   std::vector<double> share = mesh.insideFraction;
+  for (double& s : share) s = std::max(s, kLeastShare);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     for (const Index n : elements.nodesOf(t))
       if (inside[at(n)] < kLeastSupport * all[at(n)]) share[t] = std::max(share[t], kLeastSupport);

@@ -21,6 +21,8 @@ std::string formatted(const char* format, Numbers... numbers) {
   return line;
 }
 
+double sumOf(std::span<const double> values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
 EnergyField withoutEnergy(std::shared_ptr<const TetMesh> mesh, const Material& material) {
   EnergyField field;
   field.tetEnergy.assign(mesh->tets.size(), 0.0);
@@ -40,9 +42,18 @@ std::vector<double> nodeEnergies(const TetMesh& mesh, std::span<const double> te
   return sum;
 }
 
-Error notFinite() {
-  return failure("the strain energy is not a finite number",
-                 "check young, the body's tetrahedra and the impact's speed");
+/// An energy that is to be used has to be finite and to have digits.
+Result<void> checkSolution(const StaticSolution& solution, double energy) {
+  if (!std::isfinite(energy))
+    return failure("the strain energy is not a finite number",
+                   "check young, the body's tetrahedra and the impact's speed");
+  if (!(solution.residual <= kWorstResidual))
+    return failure(
+        formatted("the deformation could not be solved for: %.2g of the load is left over",
+                  solution.residual),
+        "the body is too flat for its tetrahedra, hangs together by next to nothing, or its Poisson's "
+        "ratio is too close to 1/2");
+  return {};
 }
 
 /// Returns the bytes that factoring took at most.
@@ -52,11 +63,11 @@ Result<std::size_t> deform(EnergyField& field, const Impact& impact, ElementOrde
   SHERD_ASSIGN(const std::vector<Vec3> force, impactForces(statics.elements(), impact));
   if (exec.cancelled()) return cancelledError();
   StaticSolution solution = statics.solve(force, field.material.youngModulus);
+  SHERD_CHECK(checkSolution(solution, sumOf(solution.tetEnergy)));
   field.nodeEnergy = nodeEnergies(*field.tets, solution.tetEnergy);
   field.tetEnergy = std::move(solution.tetEnergy);
   field.displacement = std::move(solution.displacement);
   field.displacement.resize(field.tets->nodes.size());
-  if (!std::isfinite(totalEnergy(field))) return notFinite();
   return statics.peakBytes();
 }
 
@@ -97,11 +108,7 @@ Result<std::vector<Vec3>> forcesOf(const PatchLoader& loader, std::size_t nodes,
 
 }  // namespace
 
-double totalEnergy(const EnergyField& field) {
-  double sum = 0;
-  for (const double e : field.tetEnergy) sum += e;
-  return sum;
-}
+double totalEnergy(const EnergyField& field) { return sumOf(field.tetEnergy); }
 
 Result<std::vector<Vec3>> impactForces(std::shared_ptr<const Elements> elements, const Impact& impact) {
   return forcesOf(PatchLoader(elements), elements->nodeCount(), impact);
@@ -122,9 +129,8 @@ Result<std::vector<ImpactEnergy>> impactEnergies(std::shared_ptr<const TetMesh> 
     SHERD_ASSIGN(const std::vector<StaticSolution> solutions,
                  statics.solveAll(forces, material.youngModulus, exec));
     for (const StaticSolution& s : solutions) {
-      energies.push_back(
-          {std::accumulate(s.tetEnergy.begin(), s.tetEnergy.end(), 0.0), nodeEnergies(*mesh, s.tetEnergy)});
-      if (!std::isfinite(energies.back().total)) return notFinite();
+      energies.push_back({sumOf(s.tetEnergy), nodeEnergies(*mesh, s.tetEnergy)});
+      SHERD_CHECK(checkSolution(s, energies.back().total));
     }
     exec.progress(static_cast<double>(energies.size()) / static_cast<double>(impacts.size()));
   }

@@ -38,8 +38,9 @@ struct SimulateOutput {
 /// mesh: the body, its tetrahedra enclosing its surface. Bit-identical for any number of threads. Says
 /// to the user: what was hit, how much energy it gave and what memory that took at most, or that the hit is
 /// below the threshold: then statics are skipped. Errors: nothing is hit, by the parameter to change
-/// (whyNoImpact); those of dropUntilImpact, Statics::factor and PatchLoader::add. Cost: the factorization,
-/// O(nodes²) at most and most of the time; O(triangles) per contact.
+/// (whyNoImpact); those of dropUntilImpact, Statics::factor and PatchLoader::add; an energy that isn't
+/// finite, or not to be had since the body is too flat or hangs together by too little. Cost: the
+/// factorization, O(nodes²) at most and most of the time; O(triangles) per contact.
 Result<SimulateOutput> simulate(std::shared_ptr<const TetMesh> mesh, const SimulateParams& params,
                                 const Exec& exec);
 
@@ -54,8 +55,9 @@ struct ImpactEnergy {
 
 /// The energies that simulate() finds for these impacts, to the bit (total: that of `work` up to rounding),
 /// with one factorization and blocks of kSolveWidth back-substitutions: for training on a thousand impacts of
-/// a body. Impacts that hit nothing have no energy. Errors: those of Statics::factor and PatchLoader::add, a
-/// body so soft that an energy isn't finite; cancelled. Memory beyond the factor: O(nodes) per impact.
+/// a body. Impacts that hit nothing have no energy. Errors: those of Statics::factor and PatchLoader::add; an
+/// energy that isn't finite, or not to be had since the body is too flat or hangs together by too little;
+/// cancelled. Memory beyond the factor: O(nodes) per impact.
 Result<std::vector<ImpactEnergy>> impactEnergies(std::shared_ptr<const TetMesh> mesh,
                                                  std::span<const Impact> impacts, const Material& material,
                                                  ElementOrder elements, const Exec& exec);

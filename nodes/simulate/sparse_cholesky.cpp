@@ -137,7 +137,9 @@ Result<SparseCholesky> SparseCholesky::factor(const BlockMatrix& matrix, std::sp
                        (impl->factor != nullptr && impl->factor->minor < order.size()
                             ? std::to_string(static_cast<int*>(impl->factor->Perm)[impl->factor->minor] / 3)
                             : std::string("?")),
-                   "the tetrahedra around it must hang together by faces and have volume");
+                   "the tetrahedra around it must hang together by faces and have volume; or the body is too "
+                   "flat, or its "
+                   "Poisson's ratio too close to 1/2, for these tetrahedra");
   impl->peakBytes =
       common.c.memory_usage + byteSize(scalars) + matrix.block.size() * (sizeof(Mat3) + sizeof(Index));
   return SparseCholesky(std::move(impl));

@@ -14,7 +14,7 @@ namespace {
 // The residual at which a solution is good: its share of the load, and the energy that it stands for. The
 // second is what makes work and strain energy equal.
 constexpr double kResidual = 1e-10, kEnergyResidual = 1e-12;
-constexpr int kMostRefinements = 2;
+constexpr int kMostRefinements = 4;
 
 Result<void> checkTets(const TetMesh& mesh) {
   if (mesh.tets.empty()) return failure("the body has no tetrahedra");
@@ -276,9 +276,11 @@ void Statics::takeStep(Progress& p) const {
 bool Statics::isSolved(Progress& p) const {
   p.step.resize(p.load.size());
   for (std::size_t n = 0; n < p.step.size(); ++n) p.step[n] = p.load[n] - p.response.force[n];
-  if (dot(p.step, p.step) <= kResidual * kResidual * dot(p.load, p.load) &&
-      std::abs(dot(p.displacement, p.step)) <= kEnergyResidual * std::abs(dot(p.displacement, p.load)))
-    return true;
+  const double load = std::sqrt(dot(p.load, p.load)), rest = std::sqrt(dot(p.step, p.step)),
+               work = std::abs(dot(p.displacement, p.load)), lost = std::abs(dot(p.displacement, p.step));
+  ++p.steps;
+  p.residual = load > 0 ? std::max(rest / load, lost / work) : 0;
+  if (rest <= kResidual * load && lost <= kEnergyResidual * work) return true;
   p.step = balanced(p.step);
   return false;
 }
@@ -292,6 +294,8 @@ StaticSolution Statics::finished(Progress p, std::span<const Vec3> force, double
   for (double& e : p.response.energy) e *= scale;
   solution.tetEnergy = std::move(p.response.energy);
   solution.displacement = std::move(p.displacement);
+  solution.residual = p.residual;
+  solution.refinements = p.steps - 1;
   return solution;
 }
 

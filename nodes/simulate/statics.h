@@ -46,6 +46,14 @@ namespace sherd {
 /// stiffness with the third).
 inline constexpr double kLeastSupport = 0.02;
 
+/// The least share of stiffness that any tetrahedron has. Nodes may rest on enough and two groups of them
+/// still hang together by next to nothing, or by tetrahedra wholly outside: that is held up here, so that no
+/// motion of the parts is free. It is what would be left of a neck of a thousandth of a tetrahedron's width.
+inline constexpr double kLeastShare = 1e-6;
+
+/// A solution whose residual is larger than this is none: the energy's digits are lost.
+inline constexpr double kWorstResidual = 1e-6;
+
 struct StaticsParams {
   double poissonRatio = 0.2;  ///< in (−1, 0.5)
   ElementOrder elements = ElementOrder::Linear;
@@ -61,6 +69,10 @@ struct StaticSolution {
   std::vector<Vec3> displacement;
   std::vector<double> tetEnergy;  ///< J, per tetrahedron, ≥ 0
   double work = 0;                ///< J: ½ u · f, equal to the sum of tetEnergy up to rounding
+  /// What is left of the balanced load f_b: the larger of ‖f_b − K u‖ / ‖f_b‖ and its work on u over that of
+  /// f_b. 1e-10 and 1e-12 are aimed at; far worse than that is a body for which K is singular to rounding.
+  double residual = 0;
+  int refinements = 0;  ///< steps taken for it
 };
 
 /// One body, factored once, for any number of loads. Only ν enters the factorization: E and the load scale.
@@ -73,7 +85,8 @@ class Statics {
                                 const Exec& exec);
 
   /// force: N, per element node. Cost: a back-substitution, O(tets), and the same again for each step of
-  /// refinement that the residual asks for (at most two: slivers and soft nodes cost digits).
+  /// refinement that the residual asks for (at most four: slivers and soft nodes cost digits). Whoever uses
+  /// the solution has to look at its residual.
   StaticSolution solve(std::span<const Vec3> force, double youngModulus) const;
 
   /// solve() for each of `forces`, to the bit and whatever their number, in parallel blocks of kSolveWidth
@@ -110,6 +123,8 @@ class Statics {
   struct Progress {
     std::vector<Vec3> load, step, displacement;
     Response response;
+    double residual = 0;
+    int steps = 0;
   };
 
   Statics(std::shared_ptr<const Elements> elements, SparseCholesky cholesky)

@@ -224,7 +224,7 @@ TEST(KnownAnswer, BallBetweenTwoPatchLoads) {
   EXPECT_LT(l6, l12);
   EXPECT_LT(std::abs(q6 - q4), 0.1 * q6);
   const double limit = l12 + (l12 - l6) / 3;  // Richardson, second order
-  EXPECT_NEAR(q6, limit, 0.06 * limit);  // their surfaces differ, too
+  EXPECT_NEAR(q6, limit, 0.06 * limit);       // their surfaces differ, too
 }
 
 /// Rods in a row whose moduli alternate by a factor of a million: under tension each has its own exact

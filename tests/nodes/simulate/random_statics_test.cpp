@@ -20,7 +20,7 @@ using Shared = std::shared_ptr<const TetMesh>;
 
 struct Case {
   Shared mesh;
-  double size = 1;
+  double size = 1, flat = 1;  ///< m; thickness over length
   Material material;
   StaticsParams params;
 };
@@ -52,12 +52,12 @@ TetMesh anyBody(Rng& rng) {
 Case anyCase(Rng& rng) {
   Case c;
   c.size = std::pow(10.0, uniformIn(rng, -3, 3.0));
-  const double flat = rng.below(3) == 0 ? std::pow(10.0, uniformIn(rng, -3, 0.0)) : 1;
+  c.flat = rng.below(3) == 0 ? std::pow(10.0, uniformIn(rng, -3, 0.0)) : 1;
   const Vec3 place =
       (rng.below(2) == 0 ? 0 : std::pow(10.0, uniformIn(rng, 0, 4.0))) * c.size * anyVector(rng);
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(uniformIn(rng, 0, 6.0), anyVector(rng).normalized()));
   TetMesh mesh = mapped(anyBody(rng), [&](const Vec3& p) {
-    return Vec3(place + c.size * (turn * Vec3(p.x(), p.y(), flat * p.z())));
+    return Vec3(place + c.size * (turn * Vec3(p.x(), p.y(), c.flat * p.z())));
   });
   if (rng.below(2) == 0)
     for (double& f : mesh.insideFraction) f = rng.below(4) == 0 ? 0 : std::pow(rng.uniform(), 4);
@@ -93,24 +93,35 @@ double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return sum;
 }
 
-void checkStatics(std::uint64_t seed) {
+void checkStatics(std::uint64_t seed, int& unsolvable) {
   SCOPED_TRACE("seed " + std::to_string(seed));
   Rng rng(seed);
   const Case c = anyCase(rng);
   const Result<Statics> statics = Statics::factor(c.mesh, c.params, {});
-  ASSERT_TRUE(statics.ok()) << statics.error().text();  // all bodies hang together and have volume
+  if (!statics.ok()) {  // all bodies hang together and have volume: only conditioning can be too bad
+    EXPECT_NE(statics.error().text().find("flat"), std::string::npos) << statics.error().text();
+    EXPECT_LT(c.flat, 0.1);
+    ++unsolvable;
+    return;
+  }
   const std::vector<Vec3> f = anyLoad(rng, c, *statics), g = anyLoad(rng, c, *statics);
   const double young = c.material.youngModulus;
   const StaticSolution u = statics->solve(f, young), v = statics->solve(g, young);
+  if (std::max(u.residual, v.residual) > kWorstResidual) {  // what simulate makes an error of
+    EXPECT_LT(c.flat, 0.1);
+    ++unsolvable;
+    return;
+  }
+  const double tolerance = 1e-9 + 10 * (u.residual + v.residual);
   for (const StaticSolution& s : {u, v}) {
     ASSERT_TRUE(std::isfinite(s.work) && s.work >= 0);
     for (const Vec3& d : s.displacement) ASSERT_TRUE(d.allFinite());
     for (const double e : s.tetEnergy) ASSERT_GE(e, 0);
     const double energy = std::accumulate(s.tetEnergy.begin(), s.tetEnergy.end(), 0.0);
-    EXPECT_NEAR(energy, s.work, 1e-8 * s.work);
+    EXPECT_NEAR(energy, s.work, tolerance * s.work);
   }
   // Maxwell and Betti: the work of one load on the other's displacement is the same either way.
-  EXPECT_NEAR(dot(f, v.displacement), dot(g, u.displacement), 1e-7 * 2 * std::sqrt(u.work * v.work));
+  EXPECT_NEAR(dot(f, v.displacement), dot(g, u.displacement), tolerance * 2 * std::sqrt(u.work * v.work));
   const Result<Statics> again = Statics::factor(c.mesh, c.params, {});
   ASSERT_TRUE(again.ok());
   EXPECT_EQ(again->solve(f, young).displacement, u.displacement);
@@ -149,7 +160,9 @@ void checkImpact(std::uint64_t seed) {
 }
 
 TEST(RandomStatics, FiniteSymmetricReproducible) {
-  for (std::uint64_t seed = 0; seed < 60; ++seed) checkStatics(seed);
+  int unsolvable = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) checkStatics(seed, unsolvable);
+  EXPECT_LE(unsolvable, 4);
 }
 
 TEST(RandomStatics, ImpactsGiveAnEnergyOrSayWhyNot) {
@@ -157,7 +170,9 @@ TEST(RandomStatics, ImpactsGiveAnEnergyOrSayWhyNot) {
 }
 
 TEST(RandomStaticsSlow, FiveThousandCases) {
-  for (std::uint64_t seed = 1000; seed < 4500; ++seed) checkStatics(seed);
+  int unsolvable = 0;
+  for (std::uint64_t seed = 1000; seed < 4500; ++seed) checkStatics(seed, unsolvable);
+  EXPECT_LE(unsolvable, 3500 / 20);
   for (std::uint64_t seed = 1000; seed < 2500; ++seed) checkImpact(seed);
 }
 
