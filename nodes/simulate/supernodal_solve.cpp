@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kPanel = 32;  // columns that are walked at once: as many streams as prefetching follows
 constexpr std::size_t kPack = 4;    // lanes of one vector
-constexpr std::size_t kPacks = 2;   // vectors of lanes at once: with four rows or columns, all registers
+constexpr std::size_t kTile = 4;    // rows or columns at once: with two vectors of lanes, all registers
 constexpr std::size_t kAhead = 32;  // rows that are fetched ahead where a panel is walked across its columns
 constexpr std::size_t kTogether = 8;  // columns of a single load at once
 
@@ -52,39 +52,42 @@ SHERD_CLONES void subtractDown(const Columns& l, const double* __restrict__ x, d
     for (std::size_t i = 0; i < l.rows; ++i) y[i] -= l.value[i + j * l.stride] * x[j];
 }
 
-SHERD_CLONES void subtractDownWide(const Columns& l, const double* __restrict__ x, double* __restrict__ y) {
-  constexpr std::size_t kRows = 4;
-  for (std::size_t i = 0; i < l.rows; i += kRows) {
-    const std::size_t rows = std::min(kRows, l.rows - i);
-    for (std::size_t lane = 0; lane < kSolveWidth; lane += kPack * kPacks) {
-      Pack sum[kRows][kPacks] = {};
-      for (std::size_t r = 0; r < rows; ++r)
-        for (std::size_t p = 0; p < kPacks; ++p)
-          sum[r][p] = *reinterpret_cast<const Pack*>(y + (i + r) * kSolveWidth + lane + p * kPack);
-      if (rows == kRows) {
-        for (std::size_t j = 0; j < l.columns; ++j) {
-          const double* a = l.value + j * l.stride + i;
-          if (lane == 0) __builtin_prefetch(a + kAhead);
-          const Pack* right = reinterpret_cast<const Pack*>(x + j * kSolveWidth + lane);
-          const Pack x0 = right[0], x1 = right[1];
+/// Some rows of it, for all loads; x and y as solveSupernodal has them.
+template <std::size_t Rows>
+[[gnu::always_inline]] inline void subtractRows(const Columns& l, std::size_t row, const double* x,
+                                                double* y) {
+  for (std::size_t lane = 0; lane < kSolveWidth; lane += 2 * kPack) {
+    Pack sum[Rows][2];
 #pragma GCC unroll 4
-          for (std::size_t r = 0; r < kRows; ++r) {
-            sum[r][0] -= a[r] * x0;
-            sum[r][1] -= a[r] * x1;
-          }
-        }
-      } else {
-        for (std::size_t j = 0; j < l.columns; ++j)
-          for (std::size_t r = 0; r < rows; ++r)
-            for (std::size_t p = 0; p < kPacks; ++p)
-              sum[r][p] -= l.value[j * l.stride + i + r] *
-                           *reinterpret_cast<const Pack*>(x + j * kSolveWidth + lane + p * kPack);
+    for (std::size_t r = 0; r < Rows; ++r) {
+      const Pack* from = reinterpret_cast<const Pack*>(y + (row + r) * kSolveWidth + lane);
+      sum[r][0] = from[0];
+      sum[r][1] = from[1];
+    }
+    for (std::size_t j = 0; j < l.columns; ++j) {
+      const double* a = l.value + j * l.stride + row;
+      if (lane == 0) __builtin_prefetch(a + kAhead);
+      const Pack* right = reinterpret_cast<const Pack*>(x + j * kSolveWidth + lane);
+      const Pack x0 = right[0], x1 = right[1];
+#pragma GCC unroll 4
+      for (std::size_t r = 0; r < Rows; ++r) {
+        sum[r][0] -= a[r] * x0;
+        sum[r][1] -= a[r] * x1;
       }
-      for (std::size_t r = 0; r < rows; ++r)
-        for (std::size_t p = 0; p < kPacks; ++p)
-          *reinterpret_cast<Pack*>(y + (i + r) * kSolveWidth + lane + p * kPack) = sum[r][p];
+    }
+#pragma GCC unroll 4
+    for (std::size_t r = 0; r < Rows; ++r) {
+      Pack* to = reinterpret_cast<Pack*>(y + (row + r) * kSolveWidth + lane);
+      to[0] = sum[r][0];
+      to[1] = sum[r][1];
     }
   }
+}
+
+SHERD_CLONES void subtractDownWide(const Columns& l, const double* x, double* y) {
+  std::size_t row = 0;
+  for (; row + kTile <= l.rows; row += kTile) subtractRows<kTile>(l, row, x, y);
+  for (; row < l.rows; ++row) subtractRows<1>(l, row, x, y);
 }
 
 // x_j −= Σ_i L_ij y_i, i ascending.
@@ -105,37 +108,41 @@ SHERD_CLONES void subtractUp(const Columns& l, const double* __restrict__ y, dou
     for (std::size_t i = 0; i < l.rows; ++i) x[j] -= l.value[i + j * l.stride] * y[i];
 }
 
-SHERD_CLONES void subtractUpWide(const Columns& l, const double* __restrict__ y, double* __restrict__ x) {
-  constexpr std::size_t kColumns = 4;
-  for (std::size_t j = 0; j < l.columns; j += kColumns) {
-    const std::size_t columns = std::min(kColumns, l.columns - j);
-    for (std::size_t lane = 0; lane < kSolveWidth; lane += kPack * kPacks) {
-      Pack sum[kColumns][kPacks] = {};
-      for (std::size_t c = 0; c < columns; ++c)
-        for (std::size_t p = 0; p < kPacks; ++p)
-          sum[c][p] = *reinterpret_cast<const Pack*>(x + (j + c) * kSolveWidth + lane + p * kPack);
-      const double* a = l.value + j * l.stride;
-      for (std::size_t i = 0; i < l.rows; ++i) {
-        const Pack* right = reinterpret_cast<const Pack*>(y + i * kSolveWidth + lane);
-        const Pack y0 = right[0], y1 = right[1];
-        if (columns == kColumns) {
+/// Some columns of it, for all loads.
+template <std::size_t Count>
+[[gnu::always_inline]] inline void subtractColumns(const Columns& l, std::size_t column, const double* y,
+                                                   double* x) {
+  for (std::size_t lane = 0; lane < kSolveWidth; lane += 2 * kPack) {
+    Pack sum[Count][2];
 #pragma GCC unroll 4
-          for (std::size_t c = 0; c < kColumns; ++c) {
-            sum[c][0] -= a[i + c * l.stride] * y0;
-            sum[c][1] -= a[i + c * l.stride] * y1;
-          }
-        } else {
-          for (std::size_t c = 0; c < columns; ++c) {
-            sum[c][0] -= a[i + c * l.stride] * y0;
-            sum[c][1] -= a[i + c * l.stride] * y1;
-          }
-        }
+    for (std::size_t c = 0; c < Count; ++c) {
+      const Pack* from = reinterpret_cast<const Pack*>(x + (column + c) * kSolveWidth + lane);
+      sum[c][0] = from[0];
+      sum[c][1] = from[1];
+    }
+    const double* a = l.value + column * l.stride;
+    for (std::size_t i = 0; i < l.rows; ++i) {
+      const Pack* right = reinterpret_cast<const Pack*>(y + i * kSolveWidth + lane);
+      const Pack y0 = right[0], y1 = right[1];
+#pragma GCC unroll 4
+      for (std::size_t c = 0; c < Count; ++c) {
+        sum[c][0] -= a[i + c * l.stride] * y0;
+        sum[c][1] -= a[i + c * l.stride] * y1;
       }
-      for (std::size_t c = 0; c < columns; ++c)
-        for (std::size_t p = 0; p < kPacks; ++p)
-          *reinterpret_cast<Pack*>(x + (j + c) * kSolveWidth + lane + p * kPack) = sum[c][p];
+    }
+#pragma GCC unroll 4
+    for (std::size_t c = 0; c < Count; ++c) {
+      Pack* to = reinterpret_cast<Pack*>(x + (column + c) * kSolveWidth + lane);
+      to[0] = sum[c][0];
+      to[1] = sum[c][1];
     }
   }
+}
+
+SHERD_CLONES void subtractUpWide(const Columns& l, const double* y, double* x) {
+  std::size_t column = 0;
+  for (; column + kTile <= l.columns; column += kTile) subtractColumns<kTile>(l, column, y, x);
+  for (; column < l.columns; ++column) subtractColumns<1>(l, column, y, x);
 }
 
 /// The two operations above and the triangle of one panel, by width.
