@@ -1,6 +1,8 @@
-// One linear tetrahedron of an isotropic material with E = 1.
+// One linear tetrahedron of an isotropic material with E = 1; its gradients are also those that quadratic
+// shape functions are made of (elements.h).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -10,9 +12,22 @@ namespace sherd {
 
 struct Lame {
   double lambda, mu;
+  Lame(double lambda_, double mu_) : lambda(lambda_), mu(mu_) {}
   /// For E = 1.
   explicit Lame(double poisson)
       : lambda(poisson / ((1 + poisson) * (1 - 2 * poisson))), mu(1 / (2 * (1 + poisson))) {}
+};
+
+/// λ in two parts, λ = full + averaged. The first acts on the volume strain of every point, the other on
+/// averages of it: where λ ≫ μ, a volume strain of zero at every point is more than the elements can satisfy
+/// without stiffening against everything else (locking). `full` is λ itself up to ν = 0.4, which therefore is
+/// computed as if there were no such split, and stays at that level beyond.
+struct VolumetricSplit {
+  static constexpr double kLargestFull = 4;  ///< λ / μ = 2 ν / (1 − 2 ν) at ν = 0.4
+  double full = 0, averaged = 0;
+  VolumetricSplit() = default;
+  explicit VolumetricSplit(const Lame& lame, double largestFull = kLargestFull)
+      : full(std::min(lame.lambda, largestFull * lame.mu)), averaged(std::max(lame.lambda - full, 0.0)) {}
 };
 
 struct Element {

@@ -39,7 +39,8 @@ Vec3 areaVector(const std::array<Vec3, 3>& t) { return 0.5 * (t[1] - t[0]).cross
 
 }  // namespace
 
-PatchLoader::PatchLoader(std::shared_ptr<const TetMesh> mesh) : mesh_(std::move(mesh)) {
+PatchLoader::PatchLoader(std::shared_ptr<const Elements> elements)
+    : elements_(std::move(elements)), mesh_(&elements_->mesh()) {
   tetBegin_.assign(mesh_->surface->triangles.size() + 1, 0);
   for (const Index triangle : mesh_->held) ++tetBegin_[at(triangle) + 1];
   for (std::size_t i = 1; i < tetBegin_.size(); ++i) tetBegin_[i] += tetBegin_[i - 1];
@@ -148,8 +149,9 @@ Result<void> PatchLoader::handToNodes(const Sample& sample, const Vec3& force,
                        std::to_string(sample.position.y()) + ", " + std::to_string(sample.position.z()) +
                        ") m",
                    "the tetrahedra must enclose the surface");
-  for (std::size_t c = 0; c < 4; ++c)
-    nodeForce[at(mesh_->tets[at(best)][c])] += share[static_cast<Eigen::Index>(c)] * force;
+  const auto value = elements_->shapeValues(share);
+  const std::span<const Index> nodes = elements_->nodesOf(at(best));
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodeForce[at(nodes[i])] += value[i] * force;
   return {};
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "types/fields.h"
+#include "simulate/elements.h"
 #include "types/tet_mesh.h"
 
 namespace sherd {
@@ -15,18 +15,19 @@ namespace sherd {
 /// Finds patches on one body and loads them. Building costs O(tets + held triangles).
 class PatchLoader {
  public:
-  explicit PatchLoader(std::shared_ptr<const TetMesh> mesh);
+  explicit PatchLoader(std::shared_ptr<const Elements> elements);
 
-  /// Adds the nodal forces (N) of `force` (N, rest space) acting at `point` (m, on or near the surface).
+  /// Adds the nodal forces (N, per element node) of `force` (N, rest space) acting at `point` (m, on or near
+  /// the surface).
   ///
   /// The patch is what lies within `radius` (m, > 0) of the point, is connected within it to the surface at
   /// the point (so that the far side of a thin wall isn't loaded), and faces the force (n·F < 0; all of it
   /// where nothing does). Pressure falls off like Hertz's, √(1 − r²/a²), by quadrature on pieces of an eighth
-  /// of the patch's width or less. A tetrahedron's nodes get their barycentric shares, which are exact for
-  /// force and moment. A patch that is lopsided about the point would act off it: the traction gets the
-  /// smallest rigid rotation of forces that makes net force and moment those of `force` at `point`. Errors:
-  /// the tetrahedra don't hold the surface there. Cost O(triangles) to find the patch, then O(pieces of the
-  /// patch × tetrahedra per triangle).
+  /// of the patch's width or less. A tetrahedron's nodes get the values of their shape functions, which are
+  /// exact for force and moment. A patch that is lopsided about the point would act off it: the traction gets
+  /// the smallest rigid rotation of forces that makes net force and moment those of `force` at `point`.
+  /// Errors: the tetrahedra don't hold the surface there. Cost O(triangles) to find the patch, then O(pieces
+  /// of the patch × tetrahedra per triangle).
   Result<void> add(const Vec3& point, const Vec3& force, double radius, std::vector<Vec3>& nodeForce) const;
 
  private:
@@ -48,7 +49,8 @@ class PatchLoader {
   std::array<Vec3, 3> corners(Index triangle) const;
   double distanceTo(Index triangle, const Vec3& point) const;
 
-  std::shared_ptr<const TetMesh> mesh_;
+  std::shared_ptr<const Elements> elements_;
+  const TetMesh* mesh_;  ///< of elements_
   std::vector<Index> tetBegin_,
       tetHolding_;  ///< per surface triangle, the tetrahedra that hold (a part of) it
 };

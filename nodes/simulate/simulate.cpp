@@ -1,12 +1,15 @@
 #include "simulate/simulate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <numeric>
 #include <string>
 
 #include "simulate/patch_load.h"
 #include "simulate/statics.h"
+#include "simulate/supernodal_solve.h"
 
 namespace sherd {
 namespace {
@@ -18,6 +21,8 @@ std::string formatted(const char* format, Numbers... numbers) {
   return line;
 }
 
+double sumOf(std::span<const double> values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
 EnergyField withoutEnergy(std::shared_ptr<const TetMesh> mesh, const Material& material) {
   EnergyField field;
   field.tetEnergy.assign(mesh->tets.size(), 0.0);
@@ -28,19 +33,42 @@ EnergyField withoutEnergy(std::shared_ptr<const TetMesh> mesh, const Material& m
   return field;
 }
 
-Result<void> deform(EnergyField& field, const Impact& impact, const Exec& exec) {
-  SHERD_ASSIGN(const std::vector<Vec3> force, impactForces(field.tets, impact));
-  SHERD_ASSIGN(const Statics statics, Statics::factor(field.tets, field.material.poissonRatio, exec));
-  if (exec.cancelled()) return cancelledError();
-  StaticSolution solution = statics.solve(force, field.material.youngModulus);
-  for (std::size_t t = 0; t < solution.tetEnergy.size(); ++t)
-    for (const Index n : field.tets->tets[t]) field.nodeEnergy[at(n)] += solution.tetEnergy[t] / 4;
-  field.tetEnergy = std::move(solution.tetEnergy);
-  field.displacement = std::move(solution.displacement);
-  if (!std::isfinite(totalEnergy(field)))
+constexpr std::size_t kImpactsAtOnce = 8 * kSolveWidth;  // whose forces and displacements are kept at a time
+
+std::vector<double> nodeEnergies(const TetMesh& mesh, std::span<const double> tetEnergy) {
+  std::vector<double> sum(mesh.nodes.size(), 0.0);
+  for (std::size_t t = 0; t < tetEnergy.size(); ++t)
+    for (const Index n : mesh.tets[t]) sum[at(n)] += tetEnergy[t] / 4;
+  return sum;
+}
+
+/// An energy that is to be used has to be finite and to have digits.
+Result<void> checkSolution(const StaticSolution& solution, double energy) {
+  if (!std::isfinite(energy))
     return failure("the strain energy is not a finite number",
                    "check young, the body's tetrahedra and the impact's speed");
+  if (!(solution.residual <= kWorstResidual))
+    return failure(
+        formatted("the deformation could not be solved for: %.2g of the load is left over",
+                  solution.residual),
+        "the body is too flat for its tetrahedra, hangs together by next to nothing, or its Poisson's "
+        "ratio is too close to 1/2");
   return {};
+}
+
+/// Returns the bytes that factoring took at most.
+Result<std::size_t> deform(EnergyField& field, const Impact& impact, ElementOrder order, const Exec& exec) {
+  SHERD_ASSIGN(const Statics statics,
+               Statics::factor(field.tets, {field.material.poissonRatio, order}, exec));
+  SHERD_ASSIGN(const std::vector<Vec3> force, impactForces(statics.elements(), impact));
+  if (exec.cancelled()) return cancelledError();
+  StaticSolution solution = statics.solve(force, field.material.youngModulus);
+  SHERD_CHECK(checkSolution(solution, sumOf(solution.tetEnergy)));
+  field.nodeEnergy = nodeEnergies(*field.tets, solution.tetEnergy);
+  field.tetEnergy = std::move(solution.tetEnergy);
+  field.displacement = std::move(solution.displacement);
+  field.displacement.resize(field.tets->nodes.size());
+  return statics.peakBytes();
 }
 
 double totalImpulse(const Impact& impact) {
@@ -64,26 +92,49 @@ Result<SimulateOutput> run(std::shared_ptr<const TetMesh> mesh, const SimulatePa
     exec.info(hit + formatted(": below the threshold of %.4g N·s, no strain energy", params.threshold));
     return out;
   }
-  SHERD_CHECK(deform(out.energy, out.impact, exec));
-  exec.info(hit + formatted(": strain energy %.4g J", totalEnergy(out.energy)));
+  SHERD_ASSIGN(const std::size_t bytes, deform(out.energy, out.impact, params.elements, exec));
+  exec.info(hit + formatted(": strain energy %.4g J; factorized in at most %.3g MB", totalEnergy(out.energy),
+                            1e-6 * static_cast<double>(bytes)));
   return out;
 }
 
-}  // namespace
-
-double totalEnergy(const EnergyField& field) {
-  double sum = 0;
-  for (const double e : field.tetEnergy) sum += e;
-  return sum;
-}
-
-Result<std::vector<Vec3>> impactForces(std::shared_ptr<const TetMesh> mesh, const Impact& impact) {
-  std::vector<Vec3> force(mesh->nodes.size(), Vec3::Zero());
-  const PatchLoader loader(std::move(mesh));
+Result<std::vector<Vec3>> forcesOf(const PatchLoader& loader, std::size_t nodes, const Impact& impact) {
+  std::vector<Vec3> force(nodes, Vec3::Zero());
   for (const Contact& contact : impact.contacts)
     SHERD_CHECK(
         loader.add(contact.point, kHertzPeak / contact.duration * contact.impulse, contact.radius, force));
   return force;
+}
+
+}  // namespace
+
+double totalEnergy(const EnergyField& field) { return sumOf(field.tetEnergy); }
+
+Result<std::vector<Vec3>> impactForces(std::shared_ptr<const Elements> elements, const Impact& impact) {
+  return forcesOf(PatchLoader(elements), elements->nodeCount(), impact);
+}
+
+Result<std::vector<ImpactEnergy>> impactEnergies(std::shared_ptr<const TetMesh> mesh,
+                                                 std::span<const Impact> impacts, const Material& material,
+                                                 ElementOrder elements, const Exec& exec) {
+  SHERD_ASSIGN(const Statics statics, Statics::factor(mesh, {material.poissonRatio, elements}, exec));
+  const PatchLoader loader(statics.elements());
+  std::vector<ImpactEnergy> energies;
+  for (std::size_t begin = 0; begin < impacts.size(); begin += kImpactsAtOnce) {
+    std::vector<std::vector<Vec3>> forces;
+    for (const Impact& impact : impacts.subspan(begin, std::min(kImpactsAtOnce, impacts.size() - begin))) {
+      SHERD_ASSIGN(std::vector<Vec3> force, forcesOf(loader, statics.elements()->nodeCount(), impact));
+      forces.push_back(std::move(force));
+    }
+    SHERD_ASSIGN(const std::vector<StaticSolution> solutions,
+                 statics.solveAll(forces, material.youngModulus, exec));
+    for (const StaticSolution& s : solutions) {
+      energies.push_back({sumOf(s.tetEnergy), nodeEnergies(*mesh, s.tetEnergy)});
+      SHERD_CHECK(checkSolution(s, energies.back().total));
+    }
+    exec.progress(static_cast<double>(energies.size()) / static_cast<double>(impacts.size()));
+  }
+  return energies;
 }
 
 Result<SimulateOutput> simulate(std::shared_ptr<const TetMesh> mesh, const SimulateParams& params,

@@ -12,16 +12,22 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "base/exec.h"
 #include "base/result.h"
 #include "rigid/rigid.h"
+#include "simulate/elements.h"
 #include "types/fields.h"
 
 namespace sherd {
 
 struct SimulateParams : RigidParams {
   double threshold = 0;  ///< N·s, ≥ 0: a hit whose impulses add up to less deforms nothing
+  /// Quadratic ones cost some forty times as much on the same tetrahedra and are worth it where energies
+  /// matter to a few per cent: in bending, linear ones are too stiff unless several lie across the thickness.
+  ElementOrder elements = ElementOrder::Linear;
 };
 
 struct SimulateOutput {
@@ -30,15 +36,31 @@ struct SimulateOutput {
 };
 
 /// mesh: the body, its tetrahedra enclosing its surface. Bit-identical for any number of threads. Says
-/// to the user: what was hit and how much energy it gave, or that the hit is below the threshold: then
-/// statics are skipped. Errors: nothing is hit, by the parameter to change (whyNoImpact); those of
-/// dropUntilImpact, Statics::factor and PatchLoader::add. Cost: the factorization, O(nodes²) at most and most
-/// of the time; O(triangles) per contact.
+/// to the user: what was hit, how much energy it gave and what memory that took at most, or that the hit is
+/// below the threshold: then statics are skipped. Errors: nothing is hit, by the parameter to change
+/// (whyNoImpact); those of dropUntilImpact, Statics::factor and PatchLoader::add; an energy that isn't
+/// finite, or not to be had since the body is too flat or hangs together by too little. Cost: the
+/// factorization, O(nodes²) at most and most of the time; O(triangles) per contact.
 Result<SimulateOutput> simulate(std::shared_ptr<const TetMesh> mesh, const SimulateParams& params,
                                 const Exec& exec);
 
-/// Nodal peak forces of an impact, N. For one who drops a body again and again and keeps its Statics.
-Result<std::vector<Vec3>> impactForces(std::shared_ptr<const TetMesh> mesh, const Impact& impact);
+/// Peak forces of an impact, N, per element node.
+Result<std::vector<Vec3>> impactForces(std::shared_ptr<const Elements> elements, const Impact& impact);
+
+/// What learning needs of an impact.
+struct ImpactEnergy {
+  double total = 0;                ///< J
+  std::vector<double> nodeEnergy;  ///< J, per node of the mesh: EnergyField::nodeEnergy
+};
+
+/// The energies that simulate() finds for these impacts, to the bit (total: that of `work` up to rounding),
+/// with one factorization and blocks of kSolveWidth back-substitutions: for training on a thousand impacts of
+/// a body. Impacts that hit nothing have no energy. Errors: those of Statics::factor and PatchLoader::add; an
+/// energy that isn't finite, or not to be had since the body is too flat or hangs together by too little;
+/// cancelled. Memory beyond the factor: O(nodes) per impact.
+Result<std::vector<ImpactEnergy>> impactEnergies(std::shared_ptr<const TetMesh> mesh,
+                                                 std::span<const Impact> impacts, const Material& material,
+                                                 ElementOrder elements, const Exec& exec);
 
 /// J: total strain energy.
 double totalEnergy(const EnergyField& field);

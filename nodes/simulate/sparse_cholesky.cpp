@@ -3,11 +3,11 @@
 #include <cholmod.h>
 
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 #include <limits>
-#include <new>
 #include <string>
+
+#include "simulate/supernodal_solve.h"
 
 extern "C" {
 void openblas_set_num_threads(int threads);
@@ -38,6 +38,8 @@ struct Common {
   Common& operator=(const Common&) = delete;
   cholmod_common c;
 };
+
+constexpr std::size_t kWorthABlock = 3;  // loads: fewer are faster one by one
 
 void useOneThread() {
   static const bool once = (openblas_set_num_threads(1), true);
@@ -75,6 +77,10 @@ struct Scalars {
   std::vector<double> value;
 };
 
+std::size_t byteSize(const Scalars& s) {
+  return s.begin.size() * sizeof(int) + s.row.size() * (sizeof(int) + sizeof(double));
+}
+
 Scalars expand(const BlockMatrix& matrix) {
   Scalars s;
   s.row.reserve(9 * matrix.row.size());
@@ -101,7 +107,7 @@ struct SparseCholesky::Impl {
     cholmod_free_factor(&factor, &common.c);
   }
   cholmod_factor* factor = nullptr;
-  std::size_t nodes = 0;
+  std::size_t nodes = 0, peakBytes = 0;
 };
 
 SparseCholesky::SparseCholesky(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -131,25 +137,53 @@ Result<SparseCholesky> SparseCholesky::factor(const BlockMatrix& matrix, std::sp
                        (impl->factor != nullptr && impl->factor->minor < order.size()
                             ? std::to_string(static_cast<int*>(impl->factor->Perm)[impl->factor->minor] / 3)
                             : std::string("?")),
-                   "the tetrahedra around it must hang together by faces and have volume");
+                   "the tetrahedra around it must hang together by faces and have volume; or the body is too "
+                   "flat, or its "
+                   "Poisson's ratio too close to 1/2, for these tetrahedra");
+  impl->peakBytes =
+      common.c.memory_usage + byteSize(scalars) + matrix.block.size() * (sizeof(Mat3) + sizeof(Index));
   return SparseCholesky(std::move(impl));
 }
 
+namespace {
+
+SupernodalFactor viewOf(const cholmod_factor& f) {
+  return {f.nsuper,
+          static_cast<const int*>(f.super),
+          static_cast<const int*>(f.pi),
+          static_cast<const int*>(f.px),
+          static_cast<const int*>(f.s),
+          static_cast<const double*>(f.x)};
+}
+
+}  // namespace
+
 void SparseCholesky::solve(std::span<Vec3> x) const {
-  useOneThread();
-  Common common;
-  cholmod_dense b{};
-  b.nrow = b.nzmax = b.d = 3 * x.size();
-  b.ncol = 1;
-  b.x = x.data();
-  b.xtype = CHOLMOD_REAL;
-  b.dtype = CHOLMOD_DOUBLE;
-  cholmod_dense* solution = cholmod_solve(CHOLMOD_A, impl_->factor, &b, &common.c);
-  if (solution == nullptr) throw std::bad_alloc();  // the only way in which a good factor fails to solve
-  std::memcpy(static_cast<void*>(x.data()), solution->x, 3 * x.size() * sizeof(double));
-  cholmod_free_dense(&solution, &common.c);
+  const int* order = static_cast<const int*>(impl_->factor->Perm);
+  std::vector<double> permuted(3 * x.size());
+  for (std::size_t r = 0; r < permuted.size(); ++r) permuted[r] = x[at(order[r] / 3)][order[r] % 3];
+  solveSupernodal(viewOf(*impl_->factor), permuted.data(), 1);
+  for (std::size_t r = 0; r < permuted.size(); ++r) x[at(order[r] / 3)][order[r] % 3] = permuted[r];
+}
+
+void SparseCholesky::solve(std::span<std::vector<Vec3>* const> xs) const {
+  if (xs.size() < kWorthABlock) {
+    for (std::vector<Vec3>* x : xs) solve(*x);
+    return;
+  }
+  const int* order = static_cast<const int*>(impl_->factor->Perm);
+  const std::size_t rows = 3 * impl_->nodes;
+  std::vector<double> permuted(kSolveWidth * rows, 0.0);
+  for (std::size_t r = 0; r < rows; ++r)
+    for (std::size_t w = 0; w < xs.size(); ++w)
+      permuted[kSolveWidth * r + w] = (*xs[w])[at(order[r] / 3)][order[r] % 3];
+  solveSupernodal(viewOf(*impl_->factor), permuted.data(), kSolveWidth);
+  for (std::size_t r = 0; r < rows; ++r)
+    for (std::size_t w = 0; w < xs.size(); ++w)
+      (*xs[w])[at(order[r] / 3)][order[r] % 3] = permuted[kSolveWidth * r + w];
 }
 
 double SparseCholesky::factorSize() const { return static_cast<double>(impl_->factor->xsize); }
+std::size_t SparseCholesky::peakBytes() const { return impl_->peakBytes; }
 
 }  // namespace sherd

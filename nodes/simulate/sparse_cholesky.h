@@ -21,6 +21,7 @@ struct BlockMatrix {
 
 /// LLᵀ of a positive definite matrix. Solving is const and safe from several threads at once. Everything runs
 /// on the calling thread: OpenBLAS and OpenMP are set to one thread, since their bits depend on the number.
+/// Substitution is our own (supernodal_solve.h), for the same reason: BLAS has other bits for several loads.
 class SparseCholesky {
  public:
   /// `order`: all nodes in the order of elimination (nestedDissection), which decides how large the factor
@@ -31,8 +32,12 @@ class SparseCholesky {
 
   /// x := A⁻¹ x; x.size() is the number of nodes.
   void solve(std::span<Vec3> x) const;
+  /// The same for each of at most kSolveWidth vectors, to the bit, in little more time than two of them take.
+  void solve(std::span<std::vector<Vec3>* const> xs) const;
   /// Numbers stored in L.
   double factorSize() const;
+  /// Bytes: the most that factoring held at once, matrix and factor included.
+  std::size_t peakBytes() const;
 
  private:
   struct Impl;

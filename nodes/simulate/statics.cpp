@@ -3,24 +3,18 @@
 #include <cmath>
 #include <string>
 
+#include "base/parallel.h"
 #include "geometry/disjoint_sets.h"
-#include "simulate/assembly.h"
 #include "simulate/nested_dissection.h"
+#include "simulate/supernodal_solve.h"
 
 namespace sherd {
 namespace {
 
-/// M x for the consistent mass matrix of tetrahedra that weigh `mass`: m/20 (1 + δ_ij).
-std::vector<Vec3> massTimes(std::span<const Tetra> tets, std::span<const double> mass,
-                            std::span<const Vec3> x) {
-  std::vector<Vec3> y(x.size(), Vec3::Zero());
-  for (std::size_t t = 0; t < tets.size(); ++t) {
-    const Tetra& tet = tets[t];
-    const Vec3 sum = x[at(tet[0])] + x[at(tet[1])] + x[at(tet[2])] + x[at(tet[3])];
-    for (const Index n : tet) y[at(n)] += mass[t] / 20 * (x[at(n)] + sum);
-  }
-  return y;
-}
+// The residual at which a solution is good: its share of the load, and the energy that it stands for. The
+// second is what makes work and strain energy equal.
+constexpr double kResidual = 1e-10, kEnergyResidual = 1e-12;
+constexpr int kMostRefinements = 4;
 
 Result<void> checkTets(const TetMesh& mesh) {
   if (mesh.tets.empty()) return failure("the body has no tetrahedra");
@@ -67,10 +61,35 @@ std::vector<double> massVolumes(const TetMesh& mesh, std::span<const double> vol
   return mass;
 }
 
+/// The part of each element node: that of any element it belongs to.
+std::vector<Index> partsOfNodes(const Elements& elements, std::span<const Index> partOfMeshNode) {
+  std::vector<Index> partOf(elements.nodeCount(), -1);
+  for (std::size_t t = 0; t < elements.mesh().tets.size(); ++t)
+    for (const Index n : elements.nodesOf(t)) partOf[at(n)] = partOfMeshNode[at(elements.mesh().tets[t][0])];
+  return partOf;
+}
+
+/// Springs go to the mesh's own nodes.
+void addGauges(BlockMatrix& stiffness, std::span<const Vec3> meshNodes, std::span<const Index> partOf,
+               Index parts, Index gaugeNode) {
+  std::vector<std::vector<Index>> members(at(parts));
+  for (std::size_t n = 0; n < meshNodes.size(); ++n) members[at(partOf[n])].push_back(static_cast<Index>(n));
+  for (std::size_t p = 0; p < members.size(); ++p) {
+    const bool startsHere = gaugeNode >= 0 && at(partOf[at(gaugeNode)]) == p;
+    addGauge(stiffness, meshNodes, members[p], startsHere ? gaugeNode : -1);
+  }
+}
+
+double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
+  double sum = 0;
+  for (std::size_t n = 0; n < a.size(); ++n) sum += a[n].dot(b[n]);
+  return sum;
+}
+
 }  // namespace
 
-Result<Statics> Statics::factor(std::shared_ptr<const TetMesh> mesh, double poissonRatio, const Exec& exec,
-                                Index gaugeNode) {
+Result<Statics> Statics::factor(std::shared_ptr<const TetMesh> mesh, const StaticsParams& params,
+                                const Exec& exec) {
   SHERD_CHECK(checkTets(*mesh));
   const Box box = boxOf(mesh->nodes);
   const double size = box.diagonal();
@@ -80,48 +99,64 @@ Result<Statics> Statics::factor(std::shared_ptr<const TetMesh> mesh, double pois
   const Index partCount = connectedParts(*mesh, partOf);
   SHERD_CHECK(checkHinges(*mesh, partOf, partCount));
 
-  std::vector<double> stiffnessVolume = stiffnessShares(*mesh), volume;
+  const auto elements = std::make_shared<const Elements>(mesh, params.elements);
+  std::vector<double> stiffnessVolume = stiffnessShares(*elements), volume;
   for (std::size_t t = 0; t < mesh->tets.size(); ++t) {
     volume.push_back(Element(nodes, mesh->tets[t]).volume);
     stiffnessVolume[t] *= volume[t];
   }
-  BlockMatrix stiffness = assembleStiffness(nodes, mesh->tets, stiffnessVolume, Lame(poissonRatio));
-  std::vector<std::vector<Index>> members(at(partCount));
-  for (std::size_t n = 0; n < nodes.size(); ++n) members[at(partOf[n])].push_back(static_cast<Index>(n));
-  for (std::size_t p = 0; p < members.size(); ++p) {
-    const bool startsHere = gaugeNode >= 0 && at(partOf[at(gaugeNode)]) == p;
-    addGauge(stiffness, nodes, members[p], startsHere ? gaugeNode : -1);
-  }
+  const Lame lame(params.poissonRatio);
+  const VolumetricSplit split(lame, params.largestFull);
+  BlockMatrix stiffness = assembleStiffness(*elements, nodes, stiffnessVolume, lame.mu, split);
+  addGauges(stiffness, nodes, partOf, partCount, params.gaugeNode);
   if (exec.cancelled()) return cancelledError();
-  const std::vector<Index> order = nestedDissection(nodes, stiffness);
+  std::vector<Vec3> positions = elements->positions(nodes);
+  const std::vector<Index> order = nestedDissection(positions, stiffness);
   if (exec.cancelled()) return cancelledError();
   SHERD_ASSIGN(SparseCholesky cholesky, SparseCholesky::factor(stiffness, order));
 
-  Statics statics(mesh, std::move(cholesky));
+  Statics statics(elements, std::move(cholesky));
   statics.size_ = size;
-  statics.poisson_ = poissonRatio;
-  statics.nodes_ = std::move(nodes);
+  statics.lame_ = lame;
+  statics.split_ = split;
+  statics.nodes_ = std::move(positions);
   statics.massVolume_ = massVolumes(*mesh, volume, stiffnessVolume, partOf, partCount);
+  if (params.elements == ElementOrder::Linear && split.averaged > 0)
+    statics.averages_.emplace_back(*mesh, stiffnessVolume);
   statics.stiffnessVolume_ = std::move(stiffnessVolume);
-  statics.partOf_ = std::move(partOf);
-  statics.setParts(partCount);
+  statics.partOf_ = partsOfNodes(*elements, partOf);
+  statics.setMass(partCount);
   return statics;
 }
 
-void Statics::setParts(Index count) {
-  parts_.assign(at(count), Part{});
-  std::vector<double> mass(at(count), 0.0);
-  for (std::size_t t = 0; t < mesh_->tets.size(); ++t) {
-    const Tetra& tet = mesh_->tets[t];
-    const std::size_t part = at(partOf_[at(tet[0])]);
-    for (const Index n : tet) parts_[part].centre += massVolume_[t] / 4 * nodes_[at(n)];
+void Statics::setMass(Index partCount) {
+  parts_.assign(at(partCount), Part{});
+  const TetMesh& mesh = elements_->mesh();
+  std::vector<double> mass(at(partCount), 0.0);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const std::size_t part = at(partOf_[at(mesh.tets[t][0])]);
+    for (const Index n : mesh.tets[t]) parts_[part].centre += massVolume_[t] / 4 * nodes_[at(n)];
     mass[part] += massVolume_[t];
   }
   for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p].centre /= mass[p];
-  std::vector<Eigen::Matrix<double, 6, 6>> gram(at(count));
+
+  const Eigen::MatrixXd local = elementMass(elements_->order());
+  nodeMass_.assign(nodes_.size(), 0.0);
+  nodeMoment_.assign(nodes_.size(), Vec3::Zero());
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const std::span<const Index> own = elements_->nodesOf(t);
+    const Vec3& centre = parts_[at(partOf_[at(own[0])])].centre;
+    for (std::size_t i = 0; i < own.size(); ++i)
+      for (std::size_t j = 0; j < own.size(); ++j) {
+        const double m = massVolume_[t] * local(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+        nodeMass_[at(own[i])] += m;
+        nodeMoment_[at(own[i])] += m * (nodes_[at(own[j])] - centre);
+      }
+  }
+  std::vector<Eigen::Matrix<double, 6, 6>> gram(parts_.size());
   for (Eigen::Index mode = 0; mode < 6; ++mode) {
-    const std::vector<Vec3> field = rigidField(std::vector<Wrench>(at(count), Wrench::Unit(mode)));
-    const std::vector<Wrench> column = wrenches(massTimes(mesh_->tets, massVolume_, field));
+    const std::vector<Wrench> column =
+        wrenches(inertialForce(std::vector<Wrench>(parts_.size(), Wrench::Unit(mode))));
     for (std::size_t p = 0; p < parts_.size(); ++p) gram[p].col(mode) = column[p];
   }
   for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p].inverseGram = gram[p].inverse();
@@ -138,73 +173,191 @@ std::vector<Statics::Wrench> Statics::wrenches(std::span<const Vec3> force) cons
   return sum;
 }
 
-/// R a.
-std::vector<Vec3> Statics::rigidField(const std::vector<Wrench>& motion) const {
-  std::vector<Vec3> field(nodes_.size());
+/// M R a.
+std::vector<Vec3> Statics::inertialForce(const std::vector<Wrench>& acceleration) const {
+  std::vector<Vec3> force(nodes_.size());
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
-    const std::size_t part = at(partOf_[n]);
-    field[n] = motion[part].head<3>() + motion[part].tail<3>().cross(nodes_[n] - parts_[part].centre);
+    const Wrench& a = acceleration[at(partOf_[n])];
+    force[n] = nodeMass_[n] * a.head<3>() + a.tail<3>().cross(nodeMoment_[n]);
   }
-  return field;
+  return force;
 }
 
 std::vector<Vec3> Statics::balanced(std::span<const Vec3> force) const {
   std::vector<Wrench> acceleration = wrenches(force);
   for (std::size_t p = 0; p < parts_.size(); ++p) acceleration[p] = parts_[p].inverseGram * acceleration[p];
-  std::vector<Vec3> load = massTimes(mesh_->tets, massVolume_, rigidField(acceleration));
+  std::vector<Vec3> load = inertialForce(acceleration);
   for (std::size_t n = 0; n < load.size(); ++n) load[n] = force[n] - load[n];
   return load;
 }
 
+/// u −= R (RᵀMR)⁻¹ RᵀM u.
 void Statics::removeRigidMotion(std::vector<Vec3>& displacement) const {
-  std::vector<Wrench> motion = wrenches(massTimes(mesh_->tets, massVolume_, displacement));
+  std::vector<Wrench> motion(parts_.size(), Wrench::Zero());
+  for (std::size_t n = 0; n < displacement.size(); ++n) {
+    Wrench& sum = motion[at(partOf_[n])];
+    sum.head<3>() += nodeMass_[n] * displacement[n];
+    sum.tail<3>() += nodeMoment_[n].cross(displacement[n]);
+  }
   for (std::size_t p = 0; p < parts_.size(); ++p) motion[p] = parts_[p].inverseGram * motion[p];
-  const std::vector<Vec3> rigid = rigidField(motion);
-  for (std::size_t n = 0; n < displacement.size(); ++n) displacement[n] -= rigid[n];
+  for (std::size_t n = 0; n < displacement.size(); ++n) {
+    const std::size_t part = at(partOf_[n]);
+    displacement[n] -= motion[part].head<3>() + motion[part].tail<3>().cross(nodes_[n] - parts_[part].centre);
+  }
 }
 
-StaticSolution Statics::solve(std::span<const Vec3> force, double youngModulus) const {
-  const std::vector<Vec3> load = balanced(force);
-  StaticSolution solution;
+std::vector<double> Statics::nodalDilatation(std::span<const Vec3> u) const {
+  const TetMesh& mesh = elements_->mesh();
+  std::vector<double> theta(mesh.nodes.size(), 0.0);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const double trace = Element(nodes_, mesh.tets[t]).strain(u, mesh.tets[t]).trace();
+    for (const Index n : mesh.tets[t]) theta[at(n)] += stiffnessVolume_[t] / 4 * trace;
+  }
+  for (std::size_t n = 0; n < theta.size(); ++n) theta[n] /= averages_[0].volume[n];
+  return theta;
+}
+
+/// One tetrahedron's part of a response. `theta`: nodal volume strains, where the averaged part of λ acts on
+/// them.
+void Statics::addElement(std::size_t t, const ElementGradients& g, std::span<const Vec3> u,
+                         std::span<const double> theta, Response& out) const {
+  const Lame full(split_.full, lame_.mu);
+  const std::span<const Index> own = elements_->nodesOf(t);
+  double pressure = 0, density = 0;  // of the averaged part
+  if (!theta.empty()) {
+    for (const Index n : own) {
+      pressure += split_.averaged * theta[at(n)] / 4;
+      density += split_.averaged / 2 * theta[at(n)] * theta[at(n)] / 4;
+    }
+  } else if (split_.averaged > 0) {
+    const double mean = g.meanDilatation(u, own);
+    pressure = split_.averaged * mean;
+    density = split_.averaged / 2 * mean * mean;
+  }
+  for (std::size_t q = 0; q < g.points(); ++q) {
+    const Mat3 strain = g.strain(q, u, own);
+    const Mat3 stress = stiffnessVolume_[t] * g.weight() * Element::stress(strain, full);
+    density += g.weight() * Element::energyDensity(strain, full);
+    for (std::size_t i = 0; i < own.size(); ++i) out.force[at(own[i])].noalias() += stress * g.at(q, i);
+  }
+  if (pressure != 0)
+    for (std::size_t i = 0; i < own.size(); ++i)
+      out.force[at(own[i])] += stiffnessVolume_[t] * pressure * g.mean(i);
+  out.energy[t] = stiffnessVolume_[t] * density;
+}
+
+/// What each of several displacements gives, in one walk over the elements.
+std::vector<Statics::Response> Statics::respond(std::span<const std::vector<Vec3>* const> u) const {
+  const TetMesh& mesh = elements_->mesh();
+  std::vector<Response> out(u.size());
+  std::vector<std::vector<double>> theta(u.size());
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    out[i].force.assign(nodes_.size(), Vec3::Zero());
+    out[i].energy.resize(mesh.tets.size());
+    if (!averages_.empty()) theta[i] = nodalDilatation(*u[i]);
+  }
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const ElementGradients g(Element(nodes_, mesh.tets[t]), elements_->order());
+    for (std::size_t i = 0; i < u.size(); ++i) addElement(t, g, *u[i], theta[i], out[i]);
+  }
+  return out;
+}
+
+/// Adds the solved step.
+void Statics::takeStep(Progress& p) const {
+  if (p.displacement.empty())
+    p.displacement = std::move(p.step);
+  else
+    for (std::size_t n = 0; n < p.step.size(); ++n) p.displacement[n] += p.step[n];
+  removeRigidMotion(p.displacement);
+}
+
+/// True when what is left of the load is good enough; otherwise `step` becomes that rest.
+bool Statics::isSolved(Progress& p) const {
+  p.step.resize(p.load.size());
+  for (std::size_t n = 0; n < p.step.size(); ++n) p.step[n] = p.load[n] - p.response.force[n];
+  const double load = std::sqrt(dot(p.load, p.load)), rest = std::sqrt(dot(p.step, p.step)),
+               work = std::abs(dot(p.displacement, p.load)), lost = std::abs(dot(p.displacement, p.step));
+  ++p.steps;
+  p.residual = load > 0 ? std::max(rest / load, lost / work) : 0;
+  if (rest <= kResidual * load && lost <= kEnergyResidual * work) return true;
+  p.step = balanced(p.step);
+  return false;
+}
+
+StaticSolution Statics::finished(Progress p, std::span<const Vec3> force, double youngModulus) const {
   // In units of size and E: K' u' = f / (E size²), u = size u'.
-  std::vector<Vec3> u = load;
-  cholesky_.solve(u);
-  removeRigidMotion(u);
-  // One step of refinement: slivers and soft nodes cost digits.
-  std::vector<Vec3> rest = internalForce(u, 1 / size_);
-  for (std::size_t n = 0; n < u.size(); ++n) rest[n] = load[n] - rest[n];
-  rest = balanced(rest);
-  cholesky_.solve(rest);
-  for (std::size_t n = 0; n < u.size(); ++n) u[n] += rest[n];
-  removeRigidMotion(u);
-  for (Vec3& d : u) d /= youngModulus * size_;
-  for (std::size_t n = 0; n < u.size(); ++n) solution.work += 0.5 * u[n].dot(force[n]);
-  solution.tetEnergy = tetEnergies(u, youngModulus);
-  solution.displacement = std::move(u);
+  const double scale = 1 / (youngModulus * size_);
+  StaticSolution solution;
+  for (Vec3& d : p.displacement) d *= scale;
+  solution.work = 0.5 * dot(p.displacement, force);
+  for (double& e : p.response.energy) e *= scale;
+  solution.tetEnergy = std::move(p.response.energy);
+  solution.displacement = std::move(p.displacement);
+  solution.residual = p.residual;
+  solution.refinements = p.steps - 1;
   return solution;
 }
 
-std::vector<Vec3> Statics::internalForce(std::span<const Vec3> displacement, double youngModulus) const {
-  std::vector<Vec3> force(nodes_.size(), Vec3::Zero());
-  const Lame lame(poisson_);
-  for (std::size_t t = 0; t < mesh_->tets.size(); ++t) {
-    const Tetra& tet = mesh_->tets[t];
-    const Element element(nodes_, tet);
-    const Mat3 stress = Element::stress(element.strain(displacement, tet), lame);
-    for (std::size_t i = 0; i < 4; ++i)
-      force[at(tet[i])] += youngModulus * size_ * stiffnessVolume_[t] * (stress * element.gradient[i]);
+void Statics::solveBlock(std::span<const std::vector<Vec3>> forces, double youngModulus,
+                         std::span<StaticSolution> solutions) const {
+  std::vector<Progress> all(forces.size());
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    all[i].load = balanced(forces[i]);
+    all[i].step = all[i].load;
+    open.push_back(i);
   }
+  for (int round = 0; round <= kMostRefinements && !open.empty(); ++round) {
+    std::vector<std::vector<Vec3>*> steps;
+    std::vector<const std::vector<Vec3>*> displacements;
+    for (const std::size_t i : open) steps.push_back(&all[i].step);
+    cholesky_.solve(steps);
+    for (const std::size_t i : open) {
+      takeStep(all[i]);
+      displacements.push_back(&all[i].displacement);
+    }
+    std::vector<Response> responses = respond(displacements);
+    for (std::size_t k = 0; k < open.size(); ++k) all[open[k]].response = std::move(responses[k]);
+    std::erase_if(open, [&](std::size_t i) { return isSolved(all[i]); });
+  }
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    solutions[i] = finished(std::move(all[i]), forces[i], youngModulus);
+}
+
+StaticSolution Statics::solve(std::span<const Vec3> force, double youngModulus) const {
+  const std::vector<Vec3> one(force.begin(), force.end());
+  StaticSolution solution;
+  solveBlock({&one, 1}, youngModulus, {&solution, 1});
+  return solution;
+}
+
+Result<std::vector<StaticSolution>> Statics::solveAll(std::span<const std::vector<Vec3>> forces,
+                                                      double youngModulus, const Exec& exec) const {
+  std::vector<StaticSolution> solutions(forces.size());
+  parallelFor(exec, forces.size(), kSolveWidth, [&](std::size_t begin, std::size_t end) {
+    solveBlock(forces.subspan(begin, end - begin), youngModulus,
+               std::span(solutions).subspan(begin, end - begin));
+  });
+  if (exec.cancelled()) return cancelledError();
+  return solutions;
+}
+
+Statics::Response Statics::respondToOne(std::span<const Vec3> displacement) const {
+  const std::vector<Vec3> u(displacement.begin(), displacement.end());
+  const std::vector<Vec3>* const one[] = {&u};
+  return std::move(respond(one)[0]);
+}
+
+std::vector<Vec3> Statics::internalForce(std::span<const Vec3> displacement, double youngModulus) const {
+  std::vector<Vec3> force = respondToOne(displacement).force;
+  for (Vec3& f : force) f *= youngModulus * size_;
   return force;
 }
 
 std::vector<double> Statics::tetEnergies(std::span<const Vec3> displacement, double youngModulus) const {
-  std::vector<double> energy(mesh_->tets.size());
-  const Lame lame(poisson_);
-  for (std::size_t t = 0; t < energy.size(); ++t) {
-    const Tetra& tet = mesh_->tets[t];
-    const Mat3 strain = Element(nodes_, tet).strain(displacement, tet);
-    energy[t] = youngModulus * size_ * stiffnessVolume_[t] * Element::energyDensity(strain, lame);
-  }
+  std::vector<double> energy = respondToOne(displacement).energy;
+  for (double& e : energy) e *= youngModulus * size_;
   return energy;
 }
 

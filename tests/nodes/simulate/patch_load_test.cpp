@@ -11,6 +11,10 @@ using namespace sherd::families;
 
 namespace {
 
+std::shared_ptr<const Elements> linear(std::shared_ptr<const TetMesh> mesh) {
+  return std::make_shared<const Elements>(std::move(mesh), ElementOrder::Linear);
+}
+
 struct Net {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  // about `point`
 };
@@ -27,7 +31,7 @@ Net netOf(const TetMesh& mesh, const std::vector<Vec3>& nodal, const Vec3& point
 std::vector<Vec3> loaded(const std::shared_ptr<const TetMesh>& mesh, const Vec3& point, const Vec3& force,
                          double radius) {
   std::vector<Vec3> nodal(mesh->nodes.size(), Vec3::Zero());
-  const Result<void> done = PatchLoader(mesh).add(point, force, radius, nodal);
+  const Result<void> done = PatchLoader(linear(mesh)).add(point, force, radius, nodal);
   EXPECT_TRUE(done.ok()) << (done.ok() ? "" : done.error().text());
   return nodal;
 }
@@ -44,6 +48,22 @@ TEST(PatchLoad, ForceAndMomentAreExact) {
         EXPECT_LT((net.force - force).norm(), 1e-12 * force.norm());
         EXPECT_LT(net.moment.norm(), 1e-9 * radius * force.norm() + 1e-14 * force.norm());
       }
+}
+
+TEST(PatchLoad, QuadraticElementsTakeTheSameForceAndMoment) {
+  const auto mesh = shared(box(4, 3, 5, Vec3(0.4, 0.3, 0.5)));
+  const auto elements = std::make_shared<const Elements>(mesh, ElementOrder::Quadratic);
+  const Vec3 point(0.21, 0, 0.13), force(0.3, 1, -0.2);
+  std::vector<Vec3> nodal(elements->nodeCount(), Vec3::Zero());
+  ASSERT_TRUE(PatchLoader(elements).add(point, force, 0.08, nodal).ok());
+  const std::vector<Vec3> x = elements->positions(mesh->nodes);
+  Vec3 net = Vec3::Zero(), moment = Vec3::Zero();
+  for (std::size_t n = 0; n < nodal.size(); ++n) {
+    net += nodal[n];
+    moment += (x[n] - point).cross(nodal[n]);
+  }
+  EXPECT_LT((net - force).norm(), 1e-12);
+  EXPECT_LT(moment.norm(), 1e-11);
 }
 
 TEST(PatchLoad, ReachesAsFarAsTheRadius) {
@@ -82,7 +102,8 @@ TEST(PatchLoad, SurfaceOutsideOfTheTetrahedraIsNamed) {
   for (Vec3& p : surface->positions) p *= 1.5;
   mesh.surface = surface;
   std::vector<Vec3> nodal(mesh.nodes.size(), Vec3::Zero());
-  const Result<void> done = PatchLoader(shared(mesh)).add(Vec3(1.5, 1.5, 1.5), Vec3(-1, -1, -1), 0.1, nodal);
+  const Result<void> done =
+      PatchLoader(linear(shared(mesh))).add(Vec3(1.5, 1.5, 1.5), Vec3(-1, -1, -1), 0.1, nodal);
   ASSERT_FALSE(done.ok());
   EXPECT_NE(done.error().text().find("must enclose the surface"), std::string::npos);
 }

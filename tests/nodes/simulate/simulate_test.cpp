@@ -94,6 +94,35 @@ TEST(Simulate, BelowTheThresholdStaticsAreSkipped) {
   EXPECT_FALSE(simulate(someU(), params, {}).ok());
 }
 
+/// A sheet a million times longer than thick has a stiffness that is singular to rounding: no energy is
+/// better than any.
+TEST(Simulate, WhatRoundingLeavesNothingOfIsAnError) {
+  SimulateParams params = tilted();
+  params.body.poissonRatio = 0.4999;
+  const auto sheet = shared(box(4, 4, 1, Vec3(1, 1, 1e-6)));
+  const Result<SimulateOutput> out = simulate(sheet, params, {});
+  ASSERT_FALSE(out.ok());
+  EXPECT_NE(out.error().text().find("too flat"), std::string::npos) << out.error().text();
+}
+
+TEST(Simulate, QuadraticElementsGiveMoreEnergyInBendingOnTheSameMesh) {
+  SimulateParams params = tilted();
+  const SimulateOutput linear = run(someU(), params);
+  params.elements = ElementOrder::Quadratic;
+  const SimulateOutput quadratic = run(someU(), params);
+  EXPECT_GT(totalEnergy(quadratic.energy), totalEnergy(linear.energy));
+  EXPECT_EQ(quadratic.energy.displacement.size(), someU()->nodes.size());
+  EXPECT_EQ(quadratic.energy.nodeEnergy.size(), someU()->nodes.size());
+}
+
+TEST(Simulate, SaysWhatMemoryFactoringTook) {
+  Messages said;
+  run(someU(), tilted(), said.exec());
+  ASSERT_EQ(said.infos.size(), 1U);
+  EXPECT_NE(said.infos[0].find("factorized in at most"), std::string::npos) << said.infos[0];
+  EXPECT_NE(said.infos[0].find("MB"), std::string::npos);
+}
+
 TEST(Simulate, NodesGetQuartersOfTheirTetrahedra) {
   const SimulateOutput out = run(someU(), tilted());
   const double tets = totalEnergy(out.energy);

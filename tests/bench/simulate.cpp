@@ -1,0 +1,374 @@
+// Strain energies of impacts: time beside error.
+//
+//   bench_simulate [--part answers|contact|solver|cages]… [--out DIRECTORY] [--results FILE.md]
+//                  [--largest N] [--repetitions N]
+//
+// answers  a bar, a cantilever and a bent bar near ν = ½ against their known energies, over meshes and
+// elements contact  the energy of an impact over the time step, the mesh and the elements, at two patches of
+// given size solver   factoring, one load, a block of loads and a thousand impacts, from 1,700 to 50,000
+// nodes (N at most) cages    horse and bunny in cages of 5,000 tetrahedra against fine meshes that end at the
+// surface Times are medians of 10 (or of N repetitions), of factoring 3. Writes one CSV, Markdown table and
+// SVG plot per part into the directory (default build/bench_simulate), and all tables into sections of
+// FILE.md. Models of
+// ../shared/meshes that are absent are left out, and said.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+
+#include "base/rng.h"
+#include "bench/conforming.h"
+#include "bench/measured_table.h"
+#include "bench/plot.h"
+#include "load_mesh/load_mesh.h"
+#include "simulate/simulate.h"
+#include "simulate/statics.h"
+#include "simulate/supernodal_solve.h"
+#include "support/elastic_loads.h"
+#include "tetrahedralize/tetrahedralize.h"
+
+namespace sherd::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using Shared = std::shared_ptr<const TetMesh>;
+constexpr double kYoung = 5e10;
+constexpr ElementOrder kOrders[] = {ElementOrder::Linear, ElementOrder::Quadratic};
+
+struct Options {
+  std::set<std::string> parts;
+  fs::path out = SHERD_BINARY_DIR "/bench_simulate";
+  std::string results;
+  int repetitions = 10;
+  std::size_t largest = 51'000;
+};
+
+const char* nameOf(ElementOrder order) { return order == ElementOrder::Linear ? "linear" : "quadratic"; }
+
+template <class T>
+T orExit(Result<T> result) {
+  if (result.ok()) return std::move(result).value();
+  fmt::print(stderr, "bench_simulate: {}\n", result.error().text());
+  std::exit(1);
+}
+
+std::shared_ptr<const Statics> factored(const Shared& mesh, const StaticsParams& params) {
+  return std::make_shared<const Statics>(orExit(Statics::factor(mesh, params, Exec{})));
+}
+
+/// Registers factoring and the solution of one load, and runs both.
+struct Timed {
+  std::shared_ptr<const Statics> statics;
+  StaticSolution solution;
+  double factorMs, factorCpuMs, solveMs, solveCpuMs;
+};
+
+Timed timed(const std::string& name, const Shared& mesh, const StaticsParams& params,
+            const std::function<std::vector<Vec3>(const Elements&)>& load, const Options& options) {
+  Timed t;
+  timeOf<std::function<std::shared_ptr<const Statics>()>, std::shared_ptr<const Statics>>(
+      name + "/factor", std::min(3, options.repetitions), [=] { return factored(mesh, params); },
+      [&t](const std::shared_ptr<const Statics>& made) { t.statics = made; });
+  runMeasured();
+  const std::vector<Vec3> force = load(*t.statics->elements());
+  timeOf<std::function<StaticSolution()>, StaticSolution>(
+      name + "/solve", options.repetitions, [&t, force] { return t.statics->solve(force, kYoung); },
+      [&t](const StaticSolution& made) { t.solution = made; });
+  runMeasured();
+  t.factorMs = medianOf(name + "/factor");
+  t.factorCpuMs = processorMedianOf(name + "/factor");
+  t.solveMs = medianOf(name + "/solve");
+  t.solveCpuMs = processorMedianOf(name + "/solve");
+  return t;
+}
+
+// Known answers.
+
+struct Answer {
+  std::string name;
+  double poisson;
+  std::function<Shared(int)> mesh;
+  std::function<std::vector<Vec3>(const Elements&)> load;
+  double energy;
+};
+
+std::vector<Answer> knownAnswers() {
+  const families::Cantilever beam;
+  const families::PureBending bent;
+  std::vector<Answer> answers;
+  answers.push_back({"bar pushed at one end", 0,
+                     [](int k) { return families::shared(families::box(4 * k, k, k, Vec3(2, 0.5, 0.5))); },
+                     [](const Elements& e) {
+                       return families::tractionOn(e, [](const Vec3& x) {
+                         return Mat3(Vec3(x.x() < 1e-9 ? -4e6 : 0, 0, 0).asDiagonal());
+                       });
+                     },
+                     1e12 * 2 / (6 * kYoung * 0.25)});
+  answers.push_back({"cantilever", 0, [beam](int k) { return families::shared(beam.mesh(k)); },
+                     [beam](const Elements& e) { return beam.load(e); }, beam.energy(kYoung)});
+  for (const double poisson : {0.3, 0.45, 0.49, 0.4999})
+    answers.push_back({"bent bar", poisson, [bent](int k) { return families::shared(bent.mesh(k)); },
+                       [bent](const Elements& e) { return bent.load(e, kYoung); }, bent.energy(kYoung)});
+  return answers;
+}
+
+void answers(const Options& options, std::string& report) {
+  Table table({"body", "ν", "elements", "tets", "nodes", "energy / exact", "error", "order", "plain elements",
+               "factor cpu ms", "solve cpu ms"});
+  std::map<std::string, Plot> plots;
+  for (const Answer& a : knownAnswers())
+    for (const ElementOrder order : kOrders) {
+      double last = 0;
+      for (const int k : {1, 2, 4}) {
+        if (order == ElementOrder::Quadratic && k == 4) continue;
+        const Shared mesh = a.mesh(k);
+        const std::string name = fmt::format("{}/{:g}/{}/{}", a.name, a.poisson, nameOf(order), k);
+        const Timed t = timed(name, mesh, {a.poisson, order}, a.load, options);
+        const double error = std::abs(t.solution.work / a.energy - 1);
+        std::string plain;
+        if (a.poisson > 0.4) {
+          const StaticsParams locking{a.poisson, order, -1, std::numeric_limits<double>::infinity()};
+          const auto statics = factored(mesh, locking);
+          plain = fmt::format("{:.4f}", statics->solve(a.load(*statics->elements()), kYoung).work / a.energy);
+        }
+        table.row({a.name, fmt::format("{:g}", a.poisson), nameOf(order), count(mesh->tets.size()),
+                   count(t.statics->elements()->nodeCount()),
+                   fmt::format("{:.6f}", t.solution.work / a.energy), scientific(error),
+                   last > 1e-9 ? fmt::format("{:.2f}", std::log2(last / error)) : "", plain,
+                   number(t.factorCpuMs), number(t.solveCpuMs)});
+        last = error;
+        if (a.poisson > 0 && a.poisson < 0.49) continue;
+        Plot& plot = plots[fmt::format("{}, ν = {:g}", a.name, a.poisson)];
+        plot.title = fmt::format("{}, ν = {:g}", a.name, a.poisson);
+        plot.xLabel = "relative error of the energy";
+        plot.yLabel = "factor and solve, cpu ms";
+        if (k == 1) plot.series.push_back({nameOf(order), {}, {}});
+        plot.series.back().x.push_back(std::max(error, 1e-14));
+        plot.series.back().y.push_back(t.factorCpuMs + t.solveCpuMs);
+      }
+    }
+  table.write(options.out / "answers.csv");
+  std::vector<Plot> all;
+  for (auto& [name, plot] : plots) all.push_back(std::move(plot));
+  writePlots(options.out / "answers.svg", all);
+  report +=
+      "### Known answers\n\nPlain elements: energy over exact without averaged volume strains, which "
+      "locks.\n\n" +
+      table.markdown() + "\n";
+}
+
+// Contact.
+
+SimulateParams dropped() {
+  SimulateParams params;
+  params.orientation = Vec3(0, 0, 45);
+  params.angularVelocity = Vec3(3, -7, 11);
+  return params;
+}
+
+double energyOf(const Shared& mesh, const SimulateParams& params) {
+  return totalEnergy(orExit(simulate(mesh, params, Exec{})).energy);
+}
+
+void contact(const Options& options, std::string& report) {
+  Table steps({"time step, s", "energy, J", "against the finest"});
+  const Shared cube = families::shared(families::box(8, 8, 8, Vec3(0.2, 0.2, 0.2)));
+  SimulateParams params = dropped();
+  params.timeStep = 1.0 / 3840;
+  const double finest = energyOf(cube, params);
+  for (const double perSecond : {24.0, 60.0, 240.0, 960.0, 3840.0}) {
+    params.timeStep = 1 / perSecond;
+    const double energy = energyOf(cube, params);
+    steps.row({fmt::format("1/{:g}", perSecond), fmt::format("{:.8g}", energy),
+               scientific(std::abs(energy / finest - 1))});
+  }
+  Table meshes({"patch radius, m", "elements", "cubes along an edge", "tets", "energy, J", "change", "ms"});
+  Plot plot{"energy of a cube dropped on its edge", "tets", "J", {}};
+  for (const double radius : {0.03, 0.06})
+    for (const ElementOrder order : kOrders) {
+      Series series{fmt::format("{}, patch {:g} m", nameOf(order), radius), {}, {}};
+      double last = 0;
+      for (const int n : {4, 6, 8, 12, 16}) {
+        if (order == ElementOrder::Quadratic && n > 12) continue;
+        SimulateParams p = dropped();
+        p.contactRadius = radius;
+        p.elements = order;
+        const Shared mesh = families::shared(families::box(n, n, n, Vec3(0.2, 0.2, 0.2)));
+        const auto start = std::chrono::steady_clock::now();
+        const double energy = energyOf(mesh, p);
+        const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - start;
+        meshes.row({fmt::format("{:g}", radius), nameOf(order), count(static_cast<std::size_t>(n)),
+                    count(mesh->tets.size()), fmt::format("{:.5g}", energy),
+                    last > 0 ? fmt::format("{:+.1f} %", 100 * (energy / last - 1)) : "", number(ms.count())});
+        last = energy;
+        series.x.push_back(static_cast<double>(mesh->tets.size()));
+        series.y.push_back(energy);
+      }
+      plot.series.push_back(std::move(series));
+    }
+  steps.write(options.out / "contact_steps.csv");
+  meshes.write(options.out / "contact_meshes.csv");
+  writePlots(options.out / "contact.svg", {plot});
+  report += "### Contact\n\nA cube of 0.2 m, dropped spinning.\n\n" + steps.markdown() + "\n" +
+            meshes.markdown() + "\n";
+}
+
+// Solver.
+
+std::vector<Impact> impactsOn(const TetMesh& mesh, std::size_t count) {
+  Rng rng(5);
+  std::vector<Impact> impacts(count);
+  for (Impact& impact : impacts) {
+    const Triangle& t = mesh.boundary[rng.below(mesh.boundary.size())];
+    const Vec3 direction(rng.uniform() - 0.5, rng.uniform() - 0.5, rng.uniform() - 0.5);
+    impact.hit = true;
+    impact.contacts.push_back(
+        {(mesh.nodes[at(t[0])] + mesh.nodes[at(t[1])] + mesh.nodes[at(t[2])]) / 3, direction, 1e-4, 0.05});
+  }
+  return impacts;
+}
+
+void solver(const Options& options, std::string& report) {
+  Table table({"elements", "tets", "nodes", "factor ms", "factor cpu ms", "peak MB", "one load ms", "goal ms",
+               "one load cpu ms", "a load in a block ms", "goal ms", "a load in a block cpu ms",
+               "1000 impacts' energies ms", "energy − work"});
+  for (const ElementOrder order : kOrders)
+    for (const int n : {11, 20, 36}) {
+      const Shared mesh = families::shared(families::box(n, n, n, Vec3(1, 1, 1)));
+      if (mesh->nodes.size() > options.largest || (order == ElementOrder::Quadratic && n > 11)) continue;
+      const std::string name = fmt::format("solver/{}/{}", nameOf(order), n);
+      const std::vector<Impact> impacts = impactsOn(*mesh, 1000);
+      const auto load = [&](const Elements& e) {
+        return orExit(impactForces(std::make_shared<const Elements>(e), impacts[0]));
+      };
+      const Timed t = timed(name, mesh, {0.2, order}, load, options);
+      std::vector<std::vector<Vec3>> forces;
+      for (std::size_t i = 0; i < kSolveWidth; ++i)
+        forces.push_back(orExit(impactForces(t.statics->elements(), impacts[i])));
+      timeOf<std::function<std::size_t()>, std::size_t>(
+          name + "/block", options.repetitions,
+          [&] { return orExit(t.statics->solveAll(forces, kYoung, Exec{})).size(); }, {});
+      if (n == 11)
+        timeOf<std::function<std::size_t()>, std::size_t>(
+            name + "/thousand", 1,
+            [&] { return orExit(impactEnergies(mesh, impacts, Material{}, order, Exec{})).size(); }, {});
+      runMeasured();
+      double energy = 0;
+      for (const double e : t.solution.tetEnergy) energy += e;
+      const bool hasGoals = order == ElementOrder::Linear && n != 20;
+      const double width = static_cast<double>(kSolveWidth);
+      table.row({nameOf(order), count(mesh->tets.size()), count(t.statics->elements()->nodeCount()),
+                 number(t.factorMs), number(t.factorCpuMs),
+                 number(1e-6 * static_cast<double>(t.statics->peakBytes())), number(t.solveMs),
+                 hasGoals ? (n == 11 ? "2" : "200") : "", number(t.solveCpuMs),
+                 number(medianOf(name + "/block") / width), hasGoals && n == 36 ? "40" : "",
+                 number(processorMedianOf(name + "/block") / width),
+                 n == 11 ? number(medianOf(name + "/thousand")) : "",
+                 scientific(std::abs(energy / t.solution.work - 1))});
+    }
+  table.write(options.out / "solver.csv");
+  report += fmt::format("### Factoring and solving\n\nSolid blocks; a block of loads is {} of them.\n\n{}\n",
+                        kSolveWidth, table.markdown());
+}
+
+// Cages.
+
+void cages(const Options& options, std::string& report) {
+  const Vec3 turns[] = {Vec3(25, 10, 40), Vec3(80, 0, 20), Vec3(160, 30, 10)};
+  Table table({"model", "mesh", "elements", "tets", "nodes", "cpu ms", "drop 1", "drop 2", "drop 3"});
+  for (const char* model : {"horse", "bunny"}) {
+    const std::string file = fmt::format(SHERD_SOURCE_DIR "/../shared/meshes/{}.obj", model);
+    if (!fs::exists(file)) {
+      report += fmt::format("{} is left out: it is absent.\n\n", model);
+      continue;
+    }
+    LoadMeshParams loading;
+    loading.file = file;
+    const auto surface = std::make_shared<const TriMesh>(orExit(loadMesh(loading, Exec{})));
+    std::vector<std::pair<std::string, Shared>> meshes{
+        {"conforming", orExit(conformingMesh(*surface, 0.03))}};
+    for (const int tets : {1250, 5000, 20000})
+      meshes.emplace_back(
+          "cage", std::make_shared<const TetMesh>(orExit(tetrahedralize(surface, {tets, 0}, Exec{}))));
+    std::vector<Impact> impacts;
+    for (const Vec3& turn : turns) {
+      SimulateParams params;
+      params.orientation = turn;
+      impacts.push_back(orExit(dropUntilImpact(*meshes[1].second, params, Exec{})));
+    }
+    std::vector<ImpactEnergy> reference;
+    for (const auto& [kind, mesh] : meshes)
+      for (const ElementOrder order : {ElementOrder::Quadratic, ElementOrder::Linear}) {
+        if (order == ElementOrder::Quadratic && mesh->tets.size() > 15000 && !reference.empty()) continue;
+        const std::clock_t start = std::clock();
+        const auto energies = orExit(impactEnergies(mesh, impacts, Material{}, order, Exec{}));
+        const double ms = 1000 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+        if (reference.empty()) reference = energies;
+        std::vector<std::string> row{model,
+                                     kind,
+                                     nameOf(order),
+                                     count(mesh->tets.size()),
+                                     count(Elements(mesh, order).nodeCount()),
+                                     number(ms)};
+        for (std::size_t i = 0; i < impacts.size(); ++i)
+          row.push_back(fmt::format("{:.4g} J ({:+.1f} %)", energies[i].total,
+                                    100 * (energies[i].total / reference[i].total - 1)));
+        fmt::print("{}\n", fmt::join(row, " "));
+        std::fflush(stdout);
+        table.row(row);
+      }
+  }
+  table.write(options.out / "cages.csv");
+  report +=
+      "### Cages against meshes that end at the surface\n\nEach model's first row is the reference of those "
+      "below.\n\n" +
+      table.markdown() + "\n";
+}
+
+Options read(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool more = i + 1 < argc;
+    if (word == "--part" && more)
+      options.parts.insert(argv[++i]);
+    else if (word == "--out" && more)
+      options.out = argv[++i];
+    else if (word == "--results" && more)
+      options.results = argv[++i];
+    else if (word == "--largest" && more)
+      options.largest = std::stoul(argv[++i]);
+    else if (word == "--repetitions" && more)
+      options.repetitions = std::stoi(argv[++i]);
+    else {
+      fmt::print(stderr, "bench_simulate: unknown argument '{}'\n", word);
+      std::exit(2);
+    }
+  }
+  if (options.parts.empty()) options.parts = {"answers", "contact", "solver", "cages"};
+  return options;
+}
+
+}  // namespace
+}  // namespace sherd::bench
+
+int main(int argc, char** argv) {
+  using namespace sherd::bench;
+  benchmark::Initialize(&argc, argv);
+  const Options options = read(argc, argv);
+  fs::create_directories(options.out);
+  const std::pair<const char*, void (*)(const Options&, std::string&)> parts[] = {
+      {"answers", answers}, {"contact", contact}, {"solver", solver}, {"cages", cages}};
+  for (const auto& [part, measure] : parts) {
+    if (!options.parts.count(part)) continue;
+    std::string report;
+    measure(options, report);
+    const std::string section = std::string("bench_simulate ") + part;
+    writeSection(options.out / "results.md", section, report);
+    if (!options.results.empty()) writeSection(options.results, section, report);
+  }
+  return 0;
+}
