@@ -109,18 +109,23 @@ double startValue(const Inputs& in, const Params& params) {
   return params.background;
 }
 
-/// OpenVDB takes small scales for none.
-Result<openvdb::math::Transform::Ptr> cubesOf(double edge) {
-  try {
-    return openvdb::math::Transform::createLinearTransform(edge);
-  } catch (const openvdb::ArithmeticError&) {
-    return failure(fmt::format("voxels of {:.3g} units of the mesh are too small for OpenVDB", edge),
-                   "make `voxel` larger, or choose a smaller `unit` in LoadMesh", "voxel");
+/// Gives the canvas cubes as voxels. OpenVDB takes edges below 1e-5 for none, and large ones for infinite:
+/// for those the grid gets a unit of its own.
+void setCubes(Canvas& canvas, double voxel, const Exec& exec) {
+  constexpr double kSmallest = 1e-4, kLargest = 1e30;
+  double edge = voxel / canvas.frame.metresPerUnit;
+  if (!(edge >= kSmallest && edge <= kLargest)) {
+    exec.warn(fmt::format(
+        "voxels of {:.3g} units of the mesh are beyond what OpenVDB holds; the grid's unit is {:.3g} m", edge,
+        voxel));
+    canvas.frame.metresPerUnit = voxel;
+    edge = 1;
   }
+  canvas.grid->setTransform(openvdb::math::Transform::createLinearTransform(edge));
 }
 
 /// The field before anything is painted, on the lattice that all of it will have.
-Result<Canvas> blankCanvas(const Inputs& in, const Params& params, double voxel) {
+Result<Canvas> blankCanvas(const Inputs& in, const Params& params, double voxel, const Exec& exec) {
   Canvas canvas;
   if (isPainted(in.grid)) {
     canvas = {in.grid->impl().grid->deepCopy(), in.grid->impl().frame};
@@ -131,9 +136,7 @@ Result<Canvas> blankCanvas(const Inputs& in, const Params& params, double voxel)
       canvas.grid->setTransform(in.other->impl().grid->transform().copy());
     } else {
       if (in.mesh != nullptr) canvas.frame = in.mesh->frame;
-      const double edge = voxel / canvas.frame.metresPerUnit;
-      SHERD_ASSIGN(const openvdb::math::Transform::Ptr cubes, cubesOf(edge));
-      canvas.grid->setTransform(cubes);
+      setCubes(canvas, voxel, exec);
     }
   }
   if (!canvas.grid->transform().isLinear())
@@ -214,7 +217,7 @@ Result<ScalarGrid> paintBeta(const PaintBetaInputs& inputs, const PaintBetaParam
                          !params.strokes.empty();
   if (!hasVoxels) return constantField(in, params, name);
   const Lengths lengths = lengthsOf(in, params);
-  SHERD_ASSIGN(Canvas canvas, blankCanvas(in, params, lengths.voxel));
+  SHERD_ASSIGN(Canvas canvas, blankCanvas(in, params, lengths.voxel, exec));
   SHERD_CHECK(paintAll(canvas, in, params, lengths, exec));
   if (exec.cancelled()) return cancelledError();
   return wrapped(canvas, name);

@@ -10,6 +10,7 @@
 //
 // Voxels. A grid that is painted keeps its transform, which has to be linear (any affine one); a new one has
 // cubes, with centres on whole multiples of their edge, in the axes and the unit of the mesh (or of `other`).
+// (OpenVDB holds no edges below 1e-5 units; a grid of such voxels has its voxel as its unit, with a warning.)
 // Voxels that nothing has touched are not stored: memory is that of the active voxels, in blocks of 8³, and a
 // field that is the same everywhere stays a constant.
 #pragma once

@@ -7,11 +7,12 @@ namespace sherd {
 
 NodeType writeVdbNode() {
   using Params = WriteVdbParams;
-  return NodeBuilder<Params>(
-             "WriteVDB", 1,
-             "Writes up to four painted fields into one OpenVDB file, as Blender, Houdini and ReadVDB "
-             "read it, each as a grid of float or half under its own name.")
-      .input<ScalarGrid>("grid", "the field to write, from PaintBeta or ReadVDB")
+  NodeBuilder<Params> node(
+      "WriteVDB", 1,
+      "Writes up to four painted fields into one OpenVDB file, as Blender, Houdini and ReadVDB "
+      "read it, each as a grid of float or half under its own name.");
+  node.uninterruptible("OpenVDB's grid writing", 1300);  // of 9 million voxels
+  return node.input<ScalarGrid>("grid", "the field to write, from PaintBeta or ReadVDB")
       .optionalInput<ScalarGrid>("grid_2", "another one for the same file")
       .optionalInput<ScalarGrid>("grid_3", "another one for the same file")
       .optionalInput<ScalarGrid>("grid_4", "another one for the same file")
@@ -32,7 +33,6 @@ NodeType writeVdbNode() {
               {.unit = "m", .min = 0, .help = "length of one unit in the file; 0: as it came"})
       .output<std::string>("file", "path of the file")
       .writesFiles()
-      .uninterruptible("OpenVDB's Archive::write", 1300)  // of 9 million voxels
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         std::vector<ScalarGrid> grids;
         for (const char* port : {"grid", "grid_2", "grid_3", "grid_4"})

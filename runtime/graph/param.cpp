@@ -72,8 +72,6 @@ Result<ParamValue> fromList(const ParamInfo& info, const JsonValue& value) {
 
 Result<ParamValue> fromItems(const ParamInfo& info, const JsonValue& value) {
   std::string json = jsonText(value);
-  if (json.find("\\u0000") != std::string::npos)
-    return wrong("a text in it holds a zero byte", "leave it out");
   if (info.accepts)
     if (const auto accepted = info.accepts(json); !accepted.ok())
       return wrong(accepted.error().what, accepted.error().remedy);

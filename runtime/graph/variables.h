@@ -60,10 +60,10 @@ class Variables {
   Variables(const GraphFile& graph, const std::vector<Assignment>& overrides, const Environment& environment,
             Diagnostics& diagnostics);
 
-  /// Replaces variables in strings, also those in lists and in their objects. A string that is exactly "${x}" becomes x's value,
-  /// with its kind. Nothing where something is wrong, which then has been reported for `where`. `scope`:
-  /// whose variables these are, as in Setting. ${frame} and the wedge's variables have the values last moved
-  /// to.
+  /// Replaces variables in strings, also those in lists and in their objects. A string that is exactly "${x}"
+  /// becomes x's value, with its kind. Nothing where something is wrong, which then has been reported for
+  /// `where`. `scope`: whose variables these are, as in Setting. ${frame} and the wedge's variables have the
+  /// values last moved to.
   std::optional<Expanded> expand(const JsonValue& value, const std::string& where,
                                  const std::string& scope = {});
 
