@@ -61,7 +61,8 @@ Json describeBonds(const Fragments& f, const std::vector<Bond>& bonds) {
 std::string pieceProperties(const Fragments& f, std::size_t piece, const std::vector<Bond>& own) {
   Json json;
   addProperties(json, f, piece, own);
-  json["parent"] = f.tets->surface->piece;  // "" for none: extras that become properties of objects have no null
+  json["parent"] =
+      f.tets->surface->piece;  // "" for none: extras that become properties of objects have no null
   return json.dump();
 }
 

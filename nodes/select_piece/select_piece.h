@@ -2,8 +2,8 @@
 //
 // The closed surface of one piece: its outer skin with the attributes that it came with, cut corners
 // interpolated (cornerAttribute), and its crack faces in the material `inside`, with smooth
-// normals and texture coordinates in metres (geometry/crack_attributes.h). It is a surface like one that LoadMesh gives: whatever takes that takes this, and
-// so on down: a piece of a piece of a piece.
+// normals and texture coordinates in metres (geometry/crack_attributes.h). It is a surface like one that
+// LoadMesh gives: whatever takes that takes this, and so on down: a piece of a piece of a piece.
 //
 // Names grow with depth: the pieces of piece_0003 are piece_0003_0001, piece_0003_0002 and so on, unique over
 // all that one body ever breaks into.

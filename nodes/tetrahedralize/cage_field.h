@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "base/exec.h"
+#include "geometry/level_set.h"
 #include "geometry/surface_tree.h"
 #include "tetrahedralize/gaps.h"
 #include "tetrahedralize/graded_minimum.h"
-#include "geometry/level_set.h"
 #include "tetrahedralize/shells.h"
 #include "tetrahedralize/volume_mesher.h"
 

@@ -27,7 +27,8 @@ std::atomic<int> gThreadLimit{0};
 void setThreadLimit(int threads) { gThreadLimit = std::max(0, threads); }
 
 int threadLimit() {
-  static const int kMachine = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));  // reads a file
+  static const int kMachine =
+      std::max(1, static_cast<int>(std::thread::hardware_concurrency()));  // reads a file
   const int limit = gThreadLimit;
   return limit > 0 ? limit : kMachine;
 }

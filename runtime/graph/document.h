@@ -56,9 +56,9 @@ class Document {
 
   /// Laid out anew: two spaces a level, short objects and lists on one line of at most kLongestLine
   /// characters; comments, order, numbers and blank lines (one at most) are kept. So is what was lined up by
-  /// hand: values (of an object, or between its empty lines) and comments behind them, where most begin in one column; and objects and
-  /// lists that begin on the line of their bracket and go on below their first entry. Content is unchanged,
-  /// and doing it again changes nothing.
+  /// hand: values (of an object, or between its empty lines) and comments behind them, where most begin in
+  /// one column; and objects and lists that begin on the line of their bracket and go on below their first
+  /// entry. Content is unchanged, and doing it again changes nothing.
   std::string formatted() const;
   static constexpr std::size_t kLongestLine = 120;
 

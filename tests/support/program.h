@@ -17,8 +17,8 @@ struct ProgramRun {
   std::string output;  ///< standard output and error together
 };
 
-/// `arguments` as one would type them, quoted for a shell. Nothing is taken from or left in a cache, unless they
-/// say --cache.
+/// `arguments` as one would type them, quoted for a shell. Nothing is taken from or left in a cache, unless
+/// they say --cache.
 inline ProgramRun runProgram(const std::string& arguments, const std::string& environment = {}) {
   ProgramRun run;
   const bool evaluates = arguments.starts_with("run ") || arguments.starts_with("plan ");

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "base/rng.h"
-#include "geometry/solid.h"
 #include "geometry/inspect_surface.h"
+#include "geometry/solid.h"
 #include "geometry/weld.h"
 #include "support/surface_families.h"
 

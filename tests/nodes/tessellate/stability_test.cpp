@@ -160,8 +160,8 @@ constexpr TessellateParams kExact{.cells = CellMode::Exact}, kCanonical{.cells =
 constexpr TessellateParams kConforming{.cells = CellMode::Exact, .surface = SurfaceMode::Conforming};
 
 TEST(Stability, ExactCells) { run("exact", adversarialCase, kExact, 1, 110, false); }
-/// Uncut patches beside cut triangles; a pocket of skin that rounding laid flat; a void that touches the shell
-/// around it.
+/// Uncut patches beside cut triangles; a pocket of skin that rounding laid flat; a void that touches the
+/// shell around it.
 TEST(Stability, SeedsOfFormerFaults) {
   for (const std::uint64_t seed : {27, 465, 3147}) run("exact", adversarialCase, kExact, seed, seed, false);
 }

@@ -80,8 +80,7 @@ TEST_P(PipelineArchiveSlow, SharedModel) {
   fracture(file, 5000, 48);
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, PipelineArchiveSlow,
-                         testing::Values("bunny", "spot", "horse", "knight"));
+INSTANTIATE_TEST_SUITE_P(Meshes, PipelineArchiveSlow, testing::Values("bunny", "spot", "horse", "knight"));
 
 }  // namespace
 }  // namespace sherd
