@@ -21,6 +21,7 @@
 
 #include "base/rng.h"
 #include "bench/measured_table.h"
+#include "bench/parts.h"
 #include "cvd/cvd.h"
 #include "support/prepared_cells.h"
 
@@ -28,12 +29,6 @@ namespace sherd::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Options {
-  std::set<std::string> parts;
-  fs::path out = SHERD_BINARY_DIR "/bench_cvd";
-  std::string results;
-};
 
 struct Body {
   std::shared_ptr<const Embedding> embedding;
@@ -253,43 +248,11 @@ void scaling(const Options& options, std::string& report) {
       "### Scaling\n\nAdding all sites and ten passes, in five dimensions.\n\n" + table.markdown() + "\n";
 }
 
-Options read(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const bool more = i + 1 < argc;
-    if (word == "--part" && more)
-      options.parts.insert(argv[++i]);
-    else if (word == "--out" && more)
-      options.out = argv[++i];
-    else if (word == "--results" && more)
-      options.results = argv[++i];
-    else {
-      fmt::print(stderr, "bench_cvd: unknown argument '{}'\n", word);
-      std::exit(2);
-    }
-  }
-  if (options.parts.empty()) options.parts = {"paper", "scaling"};
-  return options;
-}
-
 }  // namespace
 }  // namespace sherd::bench
 
 int main(int argc, char** argv) {
   using namespace sherd::bench;
-  benchmark::Initialize(&argc, argv);
-  const Options options = read(argc, argv);
-  fs::create_directories(options.out);
-  const std::pair<const char*, void (*)(const Options&, std::string&)> parts[] = {{"paper", paper},
-                                                                                  {"scaling", scaling}};
-  for (const auto& [part, measure] : parts) {
-    if (!options.parts.count(part)) continue;
-    std::string report;
-    measure(options, report);
-    const std::string section = std::string("bench_cvd ") + part;
-    writeSection(options.out / "results.md", section, report);
-    if (!options.results.empty()) writeSection(options.results, section, report);
-    fmt::print("{}", report);
-  }
+  return runParts(argc, argv, "bench_cvd", SHERD_BINARY_DIR, {}, {},
+                  {{"paper", paper}, {"scaling", scaling}});
 }

@@ -22,6 +22,7 @@
 #include "base/rng.h"
 #include "bench/conforming.h"
 #include "bench/measured_table.h"
+#include "bench/parts.h"
 #include "bench/plot.h"
 #include "load_mesh/load_mesh.h"
 #include "simulate/simulate.h"
@@ -37,14 +38,6 @@ namespace fs = std::filesystem;
 using Shared = std::shared_ptr<const TetMesh>;
 constexpr double kYoung = 5e10;
 constexpr ElementOrder kOrders[] = {ElementOrder::Linear, ElementOrder::Quadratic};
-
-struct Options {
-  std::set<std::string> parts;
-  fs::path out = SHERD_BINARY_DIR "/bench_simulate";
-  std::string results;
-  int repetitions = 10;
-  std::size_t largest = 51'000;
-};
 
 const char* nameOf(ElementOrder order) { return order == ElementOrder::Linear ? "linear" : "quadratic"; }
 
@@ -328,47 +321,14 @@ void cages(const Options& options, std::string& report) {
       table.markdown() + "\n";
 }
 
-Options read(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const bool more = i + 1 < argc;
-    if (word == "--part" && more)
-      options.parts.insert(argv[++i]);
-    else if (word == "--out" && more)
-      options.out = argv[++i];
-    else if (word == "--results" && more)
-      options.results = argv[++i];
-    else if (word == "--largest" && more)
-      options.largest = std::stoul(argv[++i]);
-    else if (word == "--repetitions" && more)
-      options.repetitions = std::stoi(argv[++i]);
-    else {
-      fmt::print(stderr, "bench_simulate: unknown argument '{}'\n", word);
-      std::exit(2);
-    }
-  }
-  if (options.parts.empty()) options.parts = {"answers", "contact", "solver", "cages"};
-  return options;
-}
-
 }  // namespace
 }  // namespace sherd::bench
 
 int main(int argc, char** argv) {
   using namespace sherd::bench;
-  benchmark::Initialize(&argc, argv);
-  const Options options = read(argc, argv);
-  fs::create_directories(options.out);
-  const std::pair<const char*, void (*)(const Options&, std::string&)> parts[] = {
-      {"answers", answers}, {"contact", contact}, {"solver", solver}, {"cages", cages}};
-  for (const auto& [part, measure] : parts) {
-    if (!options.parts.count(part)) continue;
-    std::string report;
-    measure(options, report);
-    const std::string section = std::string("bench_simulate ") + part;
-    writeSection(options.out / "results.md", section, report);
-    if (!options.results.empty()) writeSection(options.results, section, report);
-  }
-  return 0;
+  Options options;
+  options.repetitions = 10;
+  options.largest = 51'000;
+  return runParts(argc, argv, "bench_simulate", SHERD_BINARY_DIR, options, {"--largest", "--repetitions"},
+                  {{"answers", answers}, {"contact", contact}, {"solver", solver}, {"cages", cages}});
 }

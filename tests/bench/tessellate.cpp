@@ -25,6 +25,7 @@
 
 #include "bench/clipping_peer.h"
 #include "bench/measured_table.h"
+#include "bench/parts.h"
 #include "bench/plot.h"
 #include "bench/scaled_bodies.h"
 #include "bench/tessellate_error.h"
@@ -38,15 +39,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Cells = std::shared_ptr<const Partition>;
-
-struct Options {
-  std::set<std::string> parts;
-  fs::path out = SHERD_BINARY_DIR "/bench_tessellate";
-  std::string results;
-  bool peer = true;
-  int repetitions = 20;
-  std::size_t largest = 10'000'000;
-};
 
 TessellateParams paramsOf(CellMode mode) {
   TessellateParams params;
@@ -318,49 +310,12 @@ void error(const Options& options, std::string& report) {
       table.markdown() + "\n";
 }
 
-Options read(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const bool more = i + 1 < argc;
-    if (word == "--part" && more)
-      options.parts.insert(argv[++i]);
-    else if (word == "--out" && more)
-      options.out = argv[++i];
-    else if (word == "--results" && more)
-      options.results = argv[++i];
-    else if (word == "--largest" && more)
-      options.largest = std::stoul(argv[++i]);
-    else if (word == "--repetitions" && more)
-      options.repetitions = std::stoi(argv[++i]);
-    else if (word == "--no-peer")
-      options.peer = false;
-    else {
-      fmt::print(stderr, "bench_tessellate: unknown argument '{}'\n", word);
-      std::exit(2);
-    }
-  }
-  if (options.parts.empty()) options.parts = {"paper", "scaling", "error"};
-  return options;
-}
-
 }  // namespace
 }  // namespace sherd::bench
 
 int main(int argc, char** argv) {
   using namespace sherd::bench;
-  benchmark::Initialize(&argc, argv);
-  const Options options = read(argc, argv);
-  fs::create_directories(options.out);
-  const std::pair<const char*, void (*)(const Options&, std::string&)> parts[] = {
-      {"paper", paper}, {"scaling", scaling}, {"error", error}};
-  for (const auto& [part, measure] : parts) {
-    if (!options.parts.count(part)) continue;
-    std::string report;
-    measure(options, report);
-    const std::string section = std::string("bench_tessellate ") + part;
-    writeSection(options.out / "results.md", section, report);
-    if (!options.results.empty()) writeSection(options.results, section, report);
-  }
-  return 0;
+  return runParts(argc, argv, "bench_tessellate", SHERD_BINARY_DIR, {},
+                  {"--largest", "--repetitions", "--no-peer"},
+                  {{"paper", paper}, {"scaling", scaling}, {"error", error}});
 }
