@@ -29,13 +29,14 @@ struct PolygonList {
 };
 
 /// What a closed surface and half spaces have in common, as a chain of oriented polygons. Sections are closed
-/// by fans of triangles, which may reach out of the solid and over each other; their signs make volumes
-/// right.
+/// by fans of triangles (caps, one per plane), which may reach out of the solid and over each other; their
+/// signs make volumes right. Where a plane crosses a cap, only the ends of their common segments count, so
+/// that the number of polygons does not multiply with the number of cuts.
 class ClippedSolid {
  public:
   ClippedSolid(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 
-  /// The part on the plane's kept side. Cost O(polygons).
+  /// The part on the plane's kept side. Cost O(polygons), and a sort of what it crosses.
   ClippedSolid clipped(const CutPlane& plane) const;
   /// m³. Exact up to rounding.
   double volume() const;
@@ -44,12 +45,16 @@ class ClippedSolid {
   const std::vector<CutPlane>& planes() const { return planes_; }
   /// Does the plane cut nothing off?
   bool within(const CutPlane& plane) const;
-  bool empty() const { return skin_.size() == 0 && caps_.size() == 0; }
+  bool empty() const;
+  /// Of the surface and of all caps.
+  std::size_t polygons() const;
 
  private:
   ClippedSolid() = default;
-  PolygonList skin_, caps_;
+  PolygonList skin_;
+  std::vector<PolygonList> caps_;  ///< one per plane
   Vec3 reference_ = Vec3::Zero();  ///< that volumes are summed about
+  double size_ = 0;
   std::vector<CutPlane> planes_;
 };
 

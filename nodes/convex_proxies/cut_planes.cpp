@@ -41,11 +41,12 @@ struct DeepEdge {
 };
 
 std::vector<const ConcaveEdge*> deepest(std::span<const ConcaveEdge> edges, const HullMesh& hull,
-                                        std::span<const CutPlane> bounds) {
+                                        std::span<const CutPlane> bounds, const Exec& exec) {
   const double size = boxOf(hull.positions).diagonal();
   const std::vector<CutPlane> planes = hullPlanes(hull);
   std::vector<DeepEdge> found;
   for (const ConcaveEdge& e : edges) {
+    if (exec.cancelled()) return {};
     const Vec3 middle = e.middle();
     if (std::any_of(bounds.begin(), bounds.end(), [&](const CutPlane& b) { return b.height(middle) > 0; }))
       continue;
@@ -108,9 +109,9 @@ std::vector<ConcaveEdge> concaveEdges(std::span<const Vec3> positions, std::span
 }
 
 std::vector<CutPlane> candidatePlanes(std::span<const ConcaveEdge> edges, const HullMesh& hull,
-                                      std::span<const CutPlane> bounds) {
+                                      std::span<const CutPlane> bounds, const Exec& exec) {
   std::vector<CutPlane> planes;
-  for (const ConcaveEdge* e : deepest(edges, hull, bounds)) {
+  for (const ConcaveEdge* e : deepest(edges, hull, bounds, exec)) {
     const Vec3 origin = e->middle();
     planes.push_back({origin, e->normals[0]});
     planes.push_back({origin, e->normals[1]});

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "base/exec.h"
 #include "convex_proxies/clipped.h"
 #include "geometry/convex_hull.h"
 
@@ -22,6 +23,6 @@ std::vector<ConcaveEdge> concaveEdges(std::span<const Vec3> positions, std::span
 /// Planes to try on a part with this hull, best guesses first: along and across the concave edges that lie
 /// deepest in the hull and within all of `bounds`, then across the hull's principal axes.
 std::vector<CutPlane> candidatePlanes(std::span<const ConcaveEdge> edges, const HullMesh& hull,
-                                      std::span<const CutPlane> bounds);
+                                      std::span<const CutPlane> bounds, const Exec& exec);
 
 }  // namespace sherd

@@ -111,7 +111,7 @@ class Decomposer {
   Result<std::optional<std::pair<Part, Part>>> bestCut(const Part& part) const {
     using Halves = std::optional<std::pair<Part, Part>>;
     std::vector<Candidate> ranking;
-    for (const CutPlane& plane : candidatePlanes(edges_, part.hull, part.solid.planes())) {
+    for (const CutPlane& plane : candidatePlanes(edges_, part.hull, part.solid.planes(), exec_)) {
       if (exec_.cancelled()) return Halves();
       SHERD_ASSIGN(Candidate candidate, tryCut(part, plane));
       ranking.push_back(std::move(candidate));

@@ -60,6 +60,16 @@ double shared(const Solid& a, const Solid& b) {
   return std::max(0.0, both.volume());
 }
 
+double shared(const std::vector<Solid>& as, const std::vector<Solid>& bs, const Exec& exec) {
+  double volume = 0;
+  for (const Solid& a : as)
+    for (const Solid& b : bs) {
+      if (exec.cancelled()) return 0;
+      volume += shared(a, b);
+    }
+  return volume;
+}
+
 /// The hull of the corners that lie farthest in evenly spread directions (a Fibonacci lattice on the sphere).
 ConvexHull reduced(const ConvexHull& hull) {
   if (hull.positions.size() <= kMostCorners) return hull;
@@ -93,7 +103,8 @@ void measureOverlaps(std::vector<PieceProxy>& pieces, const Exec& exec) {
   std::vector<Box> boxes(pieces.size());
   parallelFor(exec, pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
-      for (const ConvexHull& hull : pieces[p].hulls) hulls[p].push_back(reduced(hull));
+      for (const ConvexHull& hull : pieces[p].hulls)
+        if (!exec.cancelled()) hulls[p].push_back(reduced(hull));
       for (const ConvexHull& hull : hulls[p]) {
         solids[p].push_back(solidOf(hull));
         for (const Vec3& x : hull.positions) boxes[p].add(x);
@@ -107,9 +118,7 @@ void measureOverlaps(std::vector<PieceProxy>& pieces, const Exec& exec) {
     for (std::size_t p = begin; p < end; ++p)
       for (std::size_t q = p + 1; q < pieces.size() && !exec.cancelled(); ++q) {
         if (!boxes[p].overlaps(boxes[q])) continue;
-        double volume = 0;
-        for (const Solid& a : solids[p])
-          for (const Solid& b : solids[q]) volume += shared(a, b);
+        const double volume = shared(solids[p], solids[q], exec);
         if (volume > 0) withLater[p].emplace_back(q, volume);
       }
   });
