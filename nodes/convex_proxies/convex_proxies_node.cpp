@@ -17,8 +17,9 @@ NodeType convexProxiesNode() {
                .max = 1e3,
                .help = "a piece gets no more hulls once they are larger than it by this share of its volume"})
       .output<Proxies>("proxies", "hulls, with volumes and errors; for ExportProxies")
-      .uninterruptible("CGAL's convex hull",
-                       200)  // of a piece with 12,000 vertices, half of them in one plane
+      .implementation(2)
+      // Of a piece with 12,000 vertices, half of them in one plane.
+      .uninterruptible("CGAL's convex hull", 200)
       .run([](const ConvexProxiesParams& params, NodeIo& io) -> Result<void> {
         SHERD_ASSIGN(Proxies proxies, convexProxies(*io.in<Fragments>("pieces"), params, io.exec()));
         io.out("proxies", std::move(proxies));
