@@ -181,7 +181,7 @@ std::optional<Options> read(int argc, char** argv) {
     } else if (word == "--only" && more) {
       options.only.push_back(argv[++i]);
     } else if (word == "--out" && more) {
-      options.out = argv[++i];
+      options.out = fs::absolute(argv[++i]);
     } else if (word == "--counts" && more) {
       options.counts.clear();
       std::istringstream list(argv[++i]);
