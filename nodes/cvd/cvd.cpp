@@ -44,8 +44,7 @@ Result<Lloyd::End> settle(std::size_t degree, Lloyd& lloyd, const Embedding& emb
                           const Exec& exec) {
   if (lloyd.siteCount() > 1 && lloyd.siteCount() < degree) SHERD_CHECK(lloyd.run(limits, exec));
   while (lloyd.siteCount() < degree) {
-    SHERD_ASSIGN(const bool grown,
-                 growSite(lloyd, embedding, weights, Growth::ByVolume, params.seed, limits, exec));
+    SHERD_ASSIGN(const bool grown, growSite(lloyd, embedding, weights, Growth::ByVolume, params.seed, exec));
     exec.progress(static_cast<double>(lloyd.siteCount()) / static_cast<double>(degree));
     if (grown) continue;
     exec.warn(

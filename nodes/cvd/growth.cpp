@@ -86,11 +86,11 @@ std::optional<Index> drawSite(const Lloyd& lloyd, const Embedding& embedding, co
 }
 
 Result<bool> growSite(Lloyd& lloyd, const Embedding& embedding, const WeightField& weights, Growth growth,
-                      std::int64_t seed, const LloydLimits& limits, const Exec& exec) {
+                      std::int64_t seed, const Exec& exec) {
   const auto node = drawSite(lloyd, embedding, weights, growth, seed);
   if (!node) return false;
   lloyd.addSite(embedding.coordinates.col(*node), exec);
-  SHERD_CHECK(lloyd.run(limits, exec));
+  SHERD_CHECK(lloyd.run({.maxIterations = kGrowthPasses}, exec));
   return true;
 }
 

@@ -63,13 +63,16 @@ Result<Sites> predictDegree(const WeightField& weights, const Embedding& embeddi
   double energy = lloyd.energy();
   bool exhausted = false;
   while (lloyd.siteCount() < most && (given || !(energy < params.gamma))) {
-    SHERD_ASSIGN(const bool grown,
-                 growSite(lloyd, embedding, weights, given ? Growth::ByVolume : Growth::ByEnergy, params.seed,
-                          LloydLimits{}, exec));
+    SHERD_ASSIGN(const bool grown, growSite(lloyd, embedding, weights,
+                                            given ? Growth::ByVolume : Growth::ByEnergy, params.seed, exec));
     exhausted = !grown;
     if (exhausted) break;
     energy = lloyd.energy();
     exec.progress(static_cast<double>(lloyd.siteCount()) / static_cast<double>(most));
+  }
+  if (lloyd.siteCount() > 1) {
+    SHERD_CHECK(lloyd.run(LloydLimits{}, exec));
+    energy = lloyd.energy();
   }
   report(params, lloyd.siteCount(), energy, exhausted, exec);
   return Sites{lloyd.sites(), energy, given ? 0.0 : params.gamma, given};

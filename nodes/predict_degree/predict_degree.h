@@ -3,9 +3,10 @@
 // centroidal Voronoi diagram falls below the material's threshold γ.
 //
 // Deviation: the paper adds sites and searches anew from random starts, whose E_D rises with N now and then,
-// so that a first N below γ means little. Here each site is added to the converged ones (drawn by the seed
-// with probability ∝ w ‖x̄ − p̄‖²) and Lloyd's iteration goes on from there: E_D never rises with N. With N = 1
-// the site is the body's centroid by volume: E_D(1) < γ means that the hit is too weak to break it.
+// so that a first N below γ means little. Here each site is added to those before (drawn by the seed with
+// probability ∝ w ‖x̄ − p̄‖²) and a few passes of Lloyd's iteration go on from there (growSite): E_D never
+// rises with N. The iteration is followed to its end at the N found. With N = 1 the site is the body's
+// centroid by volume: E_D(1) < γ means that the hit is too weak to break it.
 #pragma once
 
 #include "base/exec.h"
@@ -24,8 +25,8 @@ struct PredictDegreeParams {
 
 /// Sites p̄_j (m, in the embedding), E_D and γ, or 0 and `degreeGiven`. γ = 0 itself asks for every site there
 /// can be. Says the outcome; warns where `maxDegree`, or the number of distinct nodes (that weigh), ends the
-/// search before γ is reached. Errors: those of cvd (sizes, finiteness), parameters out of range. Cost: that
-/// of N runs of Lloyd's iteration from nearly converged sites.
+/// search before γ is reached. Errors: those of cvd (sizes, finiteness), parameters out of range. Cost: about
+/// five runs of Lloyd's iteration at N.
 Result<Sites> predictDegree(const WeightField& weights, const Embedding& embedding,
                             const PredictDegreeParams& params, const Exec& exec);
 

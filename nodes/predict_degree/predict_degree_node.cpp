@@ -24,6 +24,7 @@ NodeType predictDegreeNode() {
       .output<std::int64_t>("degree", "number of sites N; 1: it does not break")
       .output<Sites>("sites", "the sites, with E_D and γ")
       .output<double>("energy", "E_D of these sites, J·m²")
+      .implementation(2)
       .run([](const PredictDegreeParams& params, NodeIo& io) -> Result<void> {
         SHERD_ASSIGN(Sites sites, predictDegree(*io.in<WeightField>("weights"),
                                                 *io.in<Embedding>("embedding"), params, io.exec()));

@@ -89,9 +89,9 @@ Outcome grown(const Body& body, int count, std::int64_t seed) {
   lloyd.addSite(bodyCentroid(*body.embedding, body.weights), Exec{});
   int steps = 0;
   while (static_cast<int>(lloyd.siteCount()) < count &&
-         orExit(growSite(lloyd, *body.embedding, body.weights, Growth::ByVolume, seed, {}, Exec{})))
+         orExit(growSite(lloyd, *body.embedding, body.weights, Growth::ByVolume, seed, Exec{})))
     ++steps;
-  return outcomeOf(lloyd, steps);
+  return iterated(std::move(lloyd));
 }
 
 /// Strain energy falls off from where a body is hit: weights by distance from the first corner of its box.

@@ -33,23 +33,44 @@ TEST(PredictDegree, AWeakHitBreaksNothingAndSaysSo) {
   EXPECT_EQ(search(c, {.gamma = whole}).positions.cols(), 2);  // below, not at
 }
 
-TEST(PredictDegree, FindsTheFirstBelowGamma) {
+/// E_D at N = 1, 2, … on the search's path.
+std::vector<double> path(const Cloud& c, std::size_t most, std::int64_t seed = 1) {
+  Lloyd lloyd(*c.embedding, c.weights);
+  lloyd.addSite(bodyCentroid(*c.embedding, c.weights), {});
+  std::vector<double> energy{lloyd.energy()};
+  while (energy.size() < most && growSite(lloyd, *c.embedding, c.weights, Growth::ByEnergy, seed, {}).value())
+    energy.push_back(lloyd.energy());
+  return energy;
+}
+
+TEST(PredictDegree, FindsTheFirstOnItsPathBelowGamma) {
   const Cloud c = cloud(400, 8, 2);
-  std::vector<double> energy;
-  for (int n = 1; n <= 30; ++n) {
-    energy.push_back(search(c, {.degree = n}).energy);
-    if (n > 1) {
-      EXPECT_LE(energy[at(n) - 1], energy[at(n) - 2] * (1 + 1e-12));
-    }
-  }
+  const std::vector<double> energy = path(c, 30);
+  ASSERT_EQ(energy.size(), 30u);
   for (const std::size_t n : {2u, 7u, 19u, 30u}) {
-    if (energy[n - 1] == energy[n - 2]) continue;
+    ASSERT_LT(energy[n - 1], energy[n - 2]);
     Said said;
     const Sites s = search(c, {.gamma = 0.5 * (energy[n - 1] + energy[n - 2])}, said.exec);
     EXPECT_EQ(static_cast<std::size_t>(s.positions.cols()), n);
-    EXPECT_EQ(s.energy, energy[n - 1]);
+    EXPECT_LE(s.energy, energy[n - 1]);  // that of the iteration's end
+    EXPECT_GT(s.energy, 0.9 * energy[n - 1]);
+    EXPECT_EQ(s.energy, search(c, {.degree = static_cast<int>(n)}).energy);
     EXPECT_TRUE(said.info("< γ"));
     EXPECT_FALSE(said.warning(""));
+  }
+}
+
+TEST(PredictDegree, EnergyNeverRisesInAThousandRandomCases) {
+  const Rng rng(11);
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    const auto draw = [&](std::uint64_t k, std::uint64_t below) {
+      return static_cast<unsigned>(rng.uniformAt(3 * i + k) * static_cast<double>(below));
+    };
+    const Cloud c = cloud(static_cast<int>(10 + draw(0, 90)), static_cast<int>(1 + draw(1, 12)),
+                          static_cast<unsigned>(i));
+    const std::vector<double> energy = path(c, 2 + draw(2, 25), static_cast<std::int64_t>(i));
+    for (std::size_t n = 1; n < energy.size(); ++n)
+      ASSERT_LE(energy[n], energy[n - 1] * (1 + 1e-14)) << "case " << i << ", N = " << n + 1;
   }
 }
 
@@ -99,8 +120,9 @@ TEST(PredictDegree, SameBitsAsThePlainSearchForAnyThreadCount) {
       plain.sites.conservativeResize(Eigen::NoChange, plain.sites.cols() + 1);
       plain.sites.rightCols(1) = c.embedding->coordinates.col(drawn);
       plain.assign();
-      plain.run({}, c.embedding->diameter);
+      plain.run({.maxIterations = kGrowthPasses}, c.embedding->diameter);
     }
+    plain.run({}, c.embedding->diameter);
     for (const int threads : {1, 2, 4}) {
       setThreadLimit(threads);
       const Sites s = search(c, {.degree = degree, .seed = 3});
