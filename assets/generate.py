@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the models of this folder: vase, mushroom, wall, table. Python 3 standard library only.
+"""Makes the models of this folder: vase, mushroom, sphere, wall, table. Python 3 standard library only.
 
     python3 generate.py [DIRECTORY]      writes the .obj files there (default: beside this script)
 
@@ -326,6 +326,39 @@ def mushroom():
     return mesh
 
 
+# ---- sphere ------------------------------------------------------------------------------------------------
+
+def sphere():
+    """48 segments and 24 bands between two poles; convex to the nanometre."""
+    mesh = Mesh("sphere: radius 0.1 m, 2208 triangles")
+    n, bands, radius = 48, 24, 0.1
+
+    def normal(i, k):
+        phi, theta = math.pi * i / bands, 2 * math.pi * k / n
+        return (math.sin(phi) * math.cos(theta), -math.cos(phi), math.sin(phi) * math.sin(theta))
+
+    def place(i, k):
+        return mesh.point(*plus((0.0, radius, 0.0), scaled(normal(i, k), radius)))
+
+    bottom = mesh.point(0, 0, 0)
+    rings = [[place(i, k) for k in range(n)] for i in range(1, bands)]
+    top = mesh.point(0, 2 * radius, 0)
+
+    def corner(i, k):
+        return (rings[i - 1][k % n], (k / n, i / bands), normal(i, k % n))
+
+    for k in range(n):
+        mesh.triangle("stone", (bottom, ((k + 0.5) / n, 0.0), (0.0, -1.0, 0.0)), corner(1, k), corner(1, k + 1))
+    for i in range(1, bands - 1):
+        for k in range(n):
+            mesh.quad("stone", corner(i, k), corner(i + 1, k), corner(i + 1, k + 1), corner(i, k + 1),
+                      flip=(i + k) % 2 == 1)
+    for k in range(n):
+        mesh.triangle("stone", corner(bands - 1, k), (top, ((k + 0.5) / n, 1.0), (0.0, 1.0, 0.0)),
+                      corner(bands - 1, k + 1))
+    return mesh
+
+
 # ---- wall and table: boundaries of sets of cells of a grid ---------------------------------------------------
 
 def rectilinear(mesh, material, cell, low, counts, filled):
@@ -384,7 +417,7 @@ def table():
 
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
-    for name, make in (("vase", vase), ("mushroom", mushroom), ("wall", wall), ("table", table)):
+    for name, make in (("vase", vase), ("mushroom", mushroom), ("sphere", sphere), ("wall", wall), ("table", table)):
         mesh = make()
         mesh.write(os.path.join(folder, name + ".obj"))
         print("%s.obj: %d vertices, %d triangles" % (name, len(mesh.points), len(mesh.triangles)))

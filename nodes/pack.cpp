@@ -6,6 +6,7 @@ namespace sherd {
 NodeType loadMeshNode();
 NodeType repairNode();
 NodeType tetrahedralizeNode();
+NodeType warpRestNode();
 NodeType embedNode();
 NodeType simulateNode();
 NodeType readVdbNode();
@@ -25,9 +26,9 @@ NodeType contactSheetNode();
 
 }  // namespace sherd
 
-SHERD_NODE_PACK(sherd::loadMeshNode, sherd::repairNode, sherd::tetrahedralizeNode, sherd::embedNode,
-                sherd::simulateNode, sherd::readVdbNode, sherd::paintBetaNode, sherd::writeVdbNode,
-                sherd::weightsNode, sherd::predictDegreeNode, sherd::cvdNode, sherd::tessellateNode,
-                sherd::selectPieceNode, sherd::convexProxiesNode, sherd::exportCrackSurfaceNode,
-                sherd::exportPiecesNode, sherd::exportProxiesNode, sherd::previewNode,
-                sherd::contactSheetNode)
+SHERD_NODE_PACK(sherd::loadMeshNode, sherd::repairNode, sherd::tetrahedralizeNode, sherd::warpRestNode,
+                sherd::embedNode, sherd::simulateNode, sherd::readVdbNode, sherd::paintBetaNode,
+                sherd::writeVdbNode, sherd::weightsNode, sherd::predictDegreeNode, sherd::cvdNode,
+                sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
+                sherd::exportCrackSurfaceNode, sherd::exportPiecesNode, sherd::exportProxiesNode,
+                sherd::previewNode, sherd::contactSheetNode)

@@ -19,16 +19,26 @@ namespace {
 
 constexpr double kConvex = 1e-6;  ///< of the hull's volume
 
-Result<void> check(const TetMesh* tets, const EmbedParams& params) {
-  if (tets == nullptr || tets->tets.empty()) return failure("the tetrahedral mesh is empty", {}, "tets");
-  for (const Vec3& p : tets->nodes)
-    if (!p.allFinite()) return failure("a node of the tetrahedral mesh is not at a finite place", {}, "tets");
+Result<void> checkParams(const EmbedParams& params) {
   if (params.dimensions < 1) return failure("no dimension is allowed", "allow at least one", "dimensions");
   if (!(params.tolerance >= 0 && params.tolerance < 1))
     return failure("the tolerance is not in [0, 1)", {}, "tolerance");
   if (!(params.time > 0) || !std::isfinite(params.time))
     return failure("the diffusion time is not positive", {}, "time");
   return {};
+}
+
+Result<void> check(const TetMesh* tets, const RestShape* rest, const EmbedParams& params) {
+  if (tets == nullptr || tets->tets.empty()) return failure("the tetrahedral mesh is empty", {}, "tets");
+  for (const Vec3& p : tets->nodes)
+    if (!p.allFinite()) return failure("a node of the tetrahedral mesh is not at a finite place", {}, "tets");
+  if (rest != nullptr && !isOf(*rest, *tets))
+    return failure("the rest shape is that of another body", "wire it to a WarpRest of the same tets",
+                   "rest");
+  if (rest != nullptr)
+    for (const Vec3& p : rest->positions)
+      if (!p.allFinite()) return failure("a node of the rest shape is not at a finite place", {}, "rest");
+  return checkParams(params);
 }
 
 Result<bool> isConvex(const TetMesh& tets) {
@@ -41,12 +51,26 @@ double boxDiagonal(const Eigen::MatrixXd& coordinates) {
   return (coordinates.rowwise().maxCoeff() - coordinates.rowwise().minCoeff()).norm();
 }
 
-Embedding euclidean(const std::shared_ptr<const TetMesh>& tets) {
+/// About the nodes' mean by the volume that the tetrahedra have in the body.
+Vec3 meanPlace(const TetMesh& tets, const std::vector<Vec3>& places) {
+  Vec3 sum = Vec3::Zero();
+  double total = 0;
+  for (std::size_t t = 0; t < tets.tets.size(); ++t) {
+    const double quarter = 0.25 * tetVolume(tets, t);
+    for (const Index n : tets.tets[t]) sum += quarter * places[at(n)];
+    total += 4 * quarter;
+  }
+  return sum / total;
+}
+
+Embedding euclidean(const std::shared_ptr<const TetMesh>& tets, const std::vector<Vec3>& places) {
   Embedding out{tets, Embedding::Metric::Euclidean, {}, 0};
-  const Vec3 centre = integrateSolid(tets->surface->positions, tets->surface->triangles).centroid;
-  out.coordinates.resize(3, static_cast<Eigen::Index>(tets->nodes.size()));
-  for (std::size_t n = 0; n < tets->nodes.size(); ++n)
-    out.coordinates.col(static_cast<Eigen::Index>(n)) = tets->nodes[n] - centre;
+  const Vec3 centre = &places == &tets->nodes
+                          ? integrateSolid(tets->surface->positions, tets->surface->triangles).centroid
+                          : meanPlace(*tets, places);
+  out.coordinates.resize(3, static_cast<Eigen::Index>(places.size()));
+  for (std::size_t n = 0; n < places.size(); ++n)
+    out.coordinates.col(static_cast<Eigen::Index>(n)) = places[n] - centre;
   out.diameter = boxDiagonal(out.coordinates);
   return out;
 }
@@ -147,16 +171,16 @@ Result<Eigen::MatrixXd> embedPart(const BodyPart& part, const EmbedParams& param
 
 /// Parts on shared axes, apart along one more.
 Eigen::MatrixXd joined(const std::vector<BodyPart>& parts, const std::vector<Eigen::MatrixXd>& x,
-                       const TetMesh& tets) {
+                       const std::vector<Vec3>& places) {
   Eigen::Index dimensions = 0;
-  double apart = boxOf(tets.nodes).diagonal();
+  double apart = boxOf(places).diagonal();
   for (const Eigen::MatrixXd& part : x) {
     dimensions = std::max(dimensions, part.rows());
     apart = std::max(apart, boxDiagonal(part));
   }
   const Eigen::Index separate = parts.size() > 1 ? 1 : 0;
   Eigen::MatrixXd all =
-      Eigen::MatrixXd::Zero(dimensions + separate, static_cast<Eigen::Index>(tets.nodes.size()));
+      Eigen::MatrixXd::Zero(dimensions + separate, static_cast<Eigen::Index>(places.size()));
   for (std::size_t c = 0; c < parts.size(); ++c)
     for (std::size_t n = 0; n < parts[c].node.size(); ++n) {
       auto column = all.col(parts[c].node[n]);
@@ -167,41 +191,64 @@ Eigen::MatrixXd joined(const std::vector<BodyPart>& parts, const std::vector<Eig
 }
 
 /// Root mean square of embedded over true edge length, less 1.
-double edgeError(const TetMesh& tets, const Eigen::MatrixXd& x) {
+double edgeError(const TetMesh& tets, const std::vector<Vec3>& places, const Eigen::MatrixXd& x) {
   double sum = 0;
   const std::vector<Edge> edges = tetEdges(tets.tets);
   for (const auto& [i, j] : edges) {
-    const double error = (x.col(i) - x.col(j)).norm() / (tets.nodes[at(i)] - tets.nodes[at(j)]).norm() - 1;
+    const double error = (x.col(i) - x.col(j)).norm() / (places[at(i)] - places[at(j)]).norm() - 1;
     sum += error * error;
   }
   return std::sqrt(sum / static_cast<double>(edges.size()));
 }
 
-}  // namespace
-
-Result<Embedding> embed(const std::shared_ptr<const TetMesh>& tets, const EmbedParams& params,
-                        const Exec& exec) {
-  SHERD_CHECK(check(tets.get(), params));
-  if (params.metric == EmbedParams::Metric::Euclidean) return euclidean(tets);
-  if (params.metric == EmbedParams::Metric::Auto) {
-    SHERD_ASSIGN(const bool convex, isConvex(*tets));
-    if (convex) {
-      exec.info("convex: straight distances, no embedding is computed");
-      return euclidean(tets);
-    }
+/// Their elements count as their mirror images, so that the modes stay those of positive lengths and volumes.
+void warnOfInsideOut(const TetMesh& tets, const std::vector<Vec3>& places, const Exec& exec) {
+  if (&places == &tets.nodes) return;
+  std::size_t count = 0;
+  for (const Tetra& t : tets.tets) {
+    const Vec3& a = places[at(t[0])];
+    count += !((places[at(t[1])] - a).cross(places[at(t[2])] - a).dot(places[at(t[3])] - a) > 0);
   }
-  const std::vector<BodyPart> parts = bodyParts(*tets);
+  if (count > 0)
+    exec.warn(
+        fmt::format("the rest shape turns {} of {} tetrahedra inside out: distances there are those of their "
+                    "mirror images; weaker waves or less roughness avoid it",
+                    count, tets.tets.size()));
+}
+
+Result<Embedding> interior(const std::shared_ptr<const TetMesh>& tets, const std::vector<Vec3>& places,
+                           const EmbedParams& params, const Exec& exec) {
+  warnOfInsideOut(*tets, places, exec);
+  const std::vector<BodyPart> parts = bodyParts(*tets, places);
   std::vector<Eigen::MatrixXd> x;
   for (const BodyPart& part : parts) {
     SHERD_ASSIGN(Eigen::MatrixXd coordinates, embedPart(part, params, exec));
     x.push_back(std::move(coordinates));
     exec.progress(static_cast<double>(x.size()) / static_cast<double>(parts.size()));
   }
-  Embedding out{tets, Embedding::Metric::Interior, joined(parts, x, *tets), 0};
+  Embedding out{tets, Embedding::Metric::Interior, joined(parts, x, places), 0};
   out.diameter = boxDiagonal(out.coordinates);
   exec.info(fmt::format("interior distances in {} dimensions; edge lengths met within {:.0f} %",
-                        out.coordinates.rows(), 100 * edgeError(*tets, out.coordinates)));
+                        out.coordinates.rows(), 100 * edgeError(*tets, places, out.coordinates)));
   return out;
+}
+
+}  // namespace
+
+Result<Embedding> embed(const std::shared_ptr<const TetMesh>& tets, const EmbedParams& params,
+                        const Exec& exec, const MetricControls& controls) {
+  SHERD_CHECK(check(tets.get(), controls.rest, params));
+  const bool isWarped = controls.rest != nullptr && controls.rest->positions != tets->nodes;
+  const std::vector<Vec3>& places = isWarped ? controls.rest->positions : tets->nodes;
+  if (params.metric == EmbedParams::Metric::Euclidean) return euclidean(tets, places);
+  if (params.metric == EmbedParams::Metric::Auto) {
+    SHERD_ASSIGN(const bool convex, isConvex(*tets));
+    if (convex) {
+      exec.info("convex: straight distances, no embedding is computed");
+      return euclidean(tets, places);
+    }
+  }
+  return interior(tets, places, params, exec);
 }
 
 }  // namespace sherd

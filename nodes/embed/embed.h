@@ -38,6 +38,12 @@
 // Harmonic extension and mean value coordinates differ by 0.001; the latter dip to −0.007 in the U.
 //
 // Deviation from the paper: the defaults are solid and fitted, for these reasons.
+//
+// Rest shapes (the paper's section 2.4). Distances are those of the warped nodes, whatever they are used for:
+// straight ones between warped positions where the body as it is is convex (or metric is euclidean),
+// otherwise modes, lengths of paths and edges are all taken there. Tetrahedra may come out inside out:
+// straight distances don't mind, and interior ones take such a tetrahedron for its mirror image (a warning
+// counts them).
 #pragma once
 
 #include <memory>
@@ -45,6 +51,7 @@
 #include "base/exec.h"
 #include "base/result.h"
 #include "types/partition.h"
+#include "types/rest_shape.h"
 
 namespace sherd {
 
@@ -63,13 +70,19 @@ struct EmbedParams {
   double time = 0.5;        ///< > 0: t λ_1 of Filter::Diffusion
 };
 
+/// How an artist bends the metric.
+struct MetricControls {
+  const RestShape* rest = nullptr;  ///< of the same body; null: the body as it is
+};
+
 /// Convex means that the surface's convex hull holds at most 1e-6 more volume than the surface.
 /// Parts of the body that aren't connected share axes, and stand 2 · (size of the body) or more apart along
 /// one more. Coordinates are about the mean by volume; signs of modes are fixed; invariant under rigid motion
 /// (to rounding, where eigenvalues are distinct), in proportion to the size. Says the metric, and how well
-/// edges are met. Errors: an empty mesh; parameters out of range; libraries' failures. Cost: hull O(n log n);
-/// then that of factoring the Laplacian and `dimensions` modes.
+/// edges are met. A rest shape that is the body gives the same bits as none. Errors: an empty mesh; a rest
+/// shape of another body; parameters out of range; libraries' failures. Cost: hull O(n log n); then that of
+/// factoring the Laplacian and `dimensions` modes.
 Result<Embedding> embed(const std::shared_ptr<const TetMesh>& tets, const EmbedParams& params,
-                        const Exec& exec);
+                        const Exec& exec, const MetricControls& controls = {});
 
 }  // namespace sherd

@@ -8,6 +8,9 @@ NodeType embedNode() {
   return NodeBuilder<P>("Embed", 1,
                         "Gives every node coordinates in which distances are those inside the body.")
       .input<TetMesh>("tets", "the body, from Tetrahedralize")
+      .optionalInput<RestShape>("rest",
+                                "a warped shape that distances are taken from, from WarpRest; left open: the "
+                                "body as it is")
       .choice(
           "metric", &P::metric,
           {{"auto", P::Metric::Auto}, {"euclidean", P::Metric::Euclidean}, {"interior", P::Metric::Interior}},
@@ -43,7 +46,8 @@ NodeType embedNode() {
                "keeps the overall shape"})
       .output<Embedding>("embedding", "coordinates per node")
       .run([](const P& params, NodeIo& io) -> Result<void> {
-        SHERD_ASSIGN(Embedding embedding, embed(io.in<TetMesh>("tets"), params, io.exec()));
+        SHERD_ASSIGN(Embedding embedding, embed(io.in<TetMesh>("tets"), params, io.exec(),
+                                                {.rest = io.in<RestShape>("rest").get()}));
         io.out("embedding", std::move(embedding));
         return {};
       });

@@ -61,7 +61,8 @@ Laplacian solidLaplacian(std::span<const Vec3> positions, std::span<const Tetra>
     const Vec3 height = positions[at(tet[0])] - positions[at(tet[1])];
     const double longest =
         std::max({areaNormal[0].norm(), areaNormal[1].norm(), areaNormal[2].norm(), areaNormal[3].norm()});
-    const double sixVolumes = std::max(-areaNormal[0].dot(height), kFlattest * std::pow(longest, 1.5));
+    const double sixVolumes =
+        std::max(std::abs(areaNormal[0].dot(height)), kFlattest * std::pow(longest, 1.5));
     for (const Index n : tet) mass[n] += sixVolumes / 24;
     // ∇b_i = −areaNormal_i / (6 V); the stiffness is V ∇b_i·∇b_j.
     for (const auto& [i, j] : kTetraEdge)

@@ -30,7 +30,7 @@ void addBorder(BodyPart& part) {
 
 }  // namespace
 
-std::vector<BodyPart> bodyParts(const TetMesh& mesh) {
+std::vector<BodyPart> bodyParts(const TetMesh& mesh, std::span<const Vec3> places) {
   DisjointSets groups(mesh.nodes.size());
   for (const Tetra& tet : mesh.tets)
     for (const Index n : tet) groups.join(at(tet[0]), at(n));
@@ -48,7 +48,7 @@ std::vector<BodyPart> bodyParts(const TetMesh& mesh) {
     BodyPart& part = parts[at(partOf[n])];
     numberOf[n] = static_cast<Index>(part.node.size());
     part.node.push_back(static_cast<Index>(n));
-    part.positions.push_back(mesh.nodes[n]);
+    part.positions.push_back(places[n]);
   }
 
   std::vector<Index> tetNumber(mesh.tets.size());

@@ -20,7 +20,7 @@ struct Laplacian {
 /// Cotangent Laplacian of a triangle surface; a third of each triangle's area per corner. Every vertex has to
 /// belong to a triangle. Triangles flatter than 1e-10 (height over length) count as that flat.
 Laplacian surfaceLaplacian(std::span<const Vec3> positions, std::span<const Triangle> triangles);
-/// The same in a tetrahedral mesh.
+/// The same in a tetrahedral mesh. A tetrahedron that is inside out counts as its mirror image.
 Laplacian solidLaplacian(std::span<const Vec3> positions, std::span<const Tetra> tets);
 
 struct Modes {

@@ -86,18 +86,18 @@ inline ContractExceptions packExceptions() {
       "Embed.dimensions", "PredictDegree.degree", "PredictDegree.max_degree", "Preview.samples",
       "Repair.resolution", "SelectPiece.number", "Tetrahedralize.tets",
       // seeds
-      "CVD.seed", "PaintBeta.seed", "PredictDegree.seed",
+      "CVD.seed", "PaintBeta.seed", "PredictDegree.seed", "WarpRest.seed",
       // shares and ratios of equal quantities
       "ConvexProxies.tolerance", "CVD.tolerance", "Embed.tolerance", "Embed.time", "Preview.explode",
       "Repair.crack", "Repair.leaf", "Repair.small_hole", "Simulate.ball_target", "Simulate.friction",
       "Simulate.obstacle_poisson", "SelectPiece.poisson", "Simulate.poisson", "Simulate.restitution",
-      "Tessellate.min_volume",
+      "Tessellate.min_volume", "WarpRest.elongation",
       // values of whatever is painted
       "PaintBeta.background", "PaintBeta.high", "PaintBeta.low", "PaintBeta.threshold",
       // an exponent
       "Weights.alpha",
-      // a direction
-      "Simulate.ball_direction"};
+      // directions
+      "Simulate.ball_direction", "WarpRest.axis", "WarpRest.wave_shift", "WarpRest.wave_travel"};
   exceptions.names = {"E_D", "Young's", "Poisson's", "Coulomb's"};
   // How much memory there is decides what is kept at once, not what comes out.
   exceptions.files = {"/proc/meminfo"};

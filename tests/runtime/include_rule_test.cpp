@@ -37,6 +37,7 @@ const std::vector<std::pair<std::string, Names>> kContracts{
     {"repair", {}},
     {"load_mesh", {"repair"}},
     {"tetrahedralize", {}},
+    {"warp_rest", {}},
     {"embed", {}},
     {"rigid", {}},
     {"simulate", {"rigid"}},

@@ -212,6 +212,67 @@ TEST(Embed, SmallestBodies) {
   EXPECT_EQ(embedded(one).metric, Embedding::Metric::Euclidean);
 }
 
+TEST(Embed, ARestShapeThatIsTheBodyChangesNoBit) {
+  for (const Mesh& mesh : {families::shared(families::box(4, 3, 2, Vec3(4, 3, 2))),
+                           families::shared(families::uShape(2, 3, 7, 2, 0.1))}) {
+    const RestShape same{mesh, mesh->nodes};
+    for (P params : interiorChoices())
+      for (const auto metric : {P::Metric::Auto, P::Metric::Interior, P::Metric::Euclidean}) {
+        params.metric = metric;
+        const auto with = embed(mesh, params, {}, {.rest = &same});
+        ASSERT_TRUE(with.ok());
+        const Embedding without = embedded(mesh, params);
+        EXPECT_EQ(with->coordinates, without.coordinates);
+        EXPECT_EQ(with->diameter, without.diameter);
+      }
+  }
+}
+
+TEST(Embed, StraightDistancesAreThoseOfTheRestShape) {
+  const Mesh box = families::shared(families::box(4, 3, 2, Vec3(4, 3, 2)));
+  RestShape rest{box, box->nodes};
+  for (Vec3& p : rest.positions)
+    p = Vec3(p.y() + std::sin(p.z()), -2 * p.x(), p.z() * p.z());  // inside out, too
+  Said said;
+  const auto e = embed(box, {}, said.exec, {.rest = &rest});
+  ASSERT_TRUE(e.ok());
+  EXPECT_EQ(e->metric, Embedding::Metric::Euclidean) << "the body as it is is convex";
+  EXPECT_FALSE(said.warning("inside out"));
+  for (Index n = 1; n < static_cast<Index>(box->nodes.size()); ++n)
+    EXPECT_NEAR(distance(*e, 0, n), (rest.positions[at(n)] - rest.positions[0]).norm(), 1e-13);
+}
+
+/// Bent with distances inside: as the bent body itself has them.
+TEST(Embed, InteriorDistancesAreThoseOfTheRestShape) {
+  const TetMesh u = families::uShape(2, 3, 7, 2, 0.1);
+  const auto bend = [](const Vec3& p) { return Vec3(1.5 * p.x() + 0.1 * p.y(), p.y(), 0.7 * p.z()); };
+  const Mesh straight = families::shared(u), bent = families::shared(families::mapped(u, bend));
+  const RestShape rest{straight, bent->nodes};
+  for (const P& params : interiorChoices()) {
+    const auto a = embed(straight, params, {}, {.rest = &rest});
+    ASSERT_TRUE(a.ok());
+    const Embedding b = embedded(bent, params);
+    for (Index n = 1; n < static_cast<Index>(u.nodes.size()); n += 5)
+      EXPECT_NEAR(distance(*a, 0, n), distance(b, 0, n), 1e-9 * b.diameter);
+  }
+}
+
+TEST(Embed, TetrahedraInsideOutCountAsTheirMirrorImages) {
+  const TetMesh u = families::uShape(2, 3, 7, 2, 0.1);
+  const Mesh mesh = families::shared(u);
+  RestShape mirrored{mesh, u.nodes};
+  for (Vec3& p : mirrored.positions) p.x() = -p.x();
+  for (const P& params : interiorChoices()) {
+    Said said;
+    const auto a = embed(mesh, params, said.exec, {.rest = &mirrored});
+    ASSERT_TRUE(a.ok()) << a.error().text();
+    EXPECT_TRUE(said.warning(std::to_string(u.tets.size()) + " of " + std::to_string(u.tets.size())));
+    const Embedding b = embedded(mesh, params);
+    for (Index n = 1; n < static_cast<Index>(u.nodes.size()); n += 5)
+      EXPECT_NEAR(distance(*a, 0, n), distance(b, 0, n), 1e-6 * b.diameter);
+  }
+}
+
 TEST(Embed, SameBitsForAnyThreadCount) {
   const Mesh u = families::shared(families::uShape(3, 3, 9, 3, 0.1));
   for (const P& params : interiorChoices()) {
@@ -240,6 +301,15 @@ TEST(Embed, Refuses) {
   EXPECT_EQ(portOf(box, {.tolerance = 1}), "tolerance");
   EXPECT_EQ(portOf(box, {.time = 0}), "time");
   EXPECT_EQ(portOf(box, {}), "ok");
+  const Mesh other = families::shared(families::box(2, 2, 1, Vec3(1, 1, 1)));
+  const RestShape ofOther{other, other->nodes};
+  RestShape nowhere{box, box->nodes};
+  nowhere.positions[2].x() = NAN;
+  for (const RestShape* rest : std::initializer_list<const RestShape*>{&ofOther, &nowhere}) {
+    const auto refused = embed(box, {}, {}, {.rest = rest});
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().port, "rest");
+  }
   CancelToken token;
   token.cancel();
   Exec exec;

@@ -52,6 +52,7 @@ TEST_P(Assets, AreSoundSolidsOfTheSizeTheyPromise) {
 INSTANTIATE_TEST_SUITE_P(Models, Assets,
                          ::testing::Values(Asset{"vase", 11092, 0, Vec3(0.2518, 0.3011, 0.19)},
                                            Asset{"mushroom", 768, 2, Vec3(0.107, 0.120, 0.107)},
+                                           Asset{"sphere", 2208, 2, Vec3(0.2, 0.2, 0.2)},
                                            Asset{"wall", 4800, 2, Vec3(1.02, 0.84, 0.12)},
                                            Asset{"table", 5732, 2, Vec3(1.20, 0.72, 0.75)}),
                          [](const auto& info) { return info.param.name; });
@@ -63,7 +64,7 @@ TEST(AssetGenerator, MakesTheCommittedBytes) {
   const std::string command =
       "python3 '" SHERD_SOURCE_DIR "/assets/generate.py' '" + folder.string() + "' > /dev/null";
   ASSERT_EQ(std::system(command.c_str()), 0);
-  for (const char* name : {"vase.obj", "mushroom.obj", "wall.obj", "table.obj"}) {
+  for (const char* name : {"vase.obj", "mushroom.obj", "sphere.obj", "wall.obj", "table.obj"}) {
     const std::string made = contentOf(folder / name);
     EXPECT_FALSE(made.empty());
     EXPECT_TRUE(made == contentOf(fs::path(SHERD_SOURCE_DIR "/assets") / name)) << name;

@@ -36,6 +36,10 @@ Embedding full() {
   return made::embedding();
 }
 template <>
+RestShape full() {
+  return made::restShape();
+}
+template <>
 Sites full() {
   return made::sites();
 }
@@ -69,8 +73,8 @@ class Archive : public testing::Test {
   }
 };
 
-using Types = testing::Types<TriMesh, TetMesh, Impact, EnergyField, WeightField, Embedding, Sites, Partition,
-                             Fragments, Proxies>;
+using Types = testing::Types<TriMesh, TetMesh, Impact, EnergyField, WeightField, Embedding, RestShape, Sites,
+                             Partition, Fragments, Proxies>;
 TYPED_TEST_SUITE(Archive, Types);
 
 TYPED_TEST(Archive, AnEmptyValueComesBack) { this->expectRoundTrip(TypeParam()); }

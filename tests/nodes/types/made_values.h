@@ -11,6 +11,7 @@
 #include "types/fragments.h"
 #include "types/partition.h"
 #include "types/proxies.h"
+#include "types/rest_shape.h"
 
 namespace sherd::made {
 
@@ -94,6 +95,12 @@ inline Embedding embedding() {
   e.coordinates(4, 0) = -0.0;
   e.diameter = 3.7;
   return e;
+}
+
+inline RestShape restShape() {
+  RestShape rest{sharedTets(), {}};
+  rest.positions.assign(rest.tets->nodes.size(), Vec3(-0.0, kSmallest, 3));
+  return rest;
 }
 
 inline Sites sites() {

@@ -16,6 +16,7 @@
 #include "types/fragments.h"
 #include "types/partition.h"
 #include "types/proxies.h"
+#include "types/rest_shape.h"
 #include "types/tet_mesh.h"
 #include "types/tri_mesh.h"
 
@@ -83,6 +84,10 @@ auto of(Maybe<WeightField> auto& v) {
 auto of(Maybe<Embedding> auto& v) {
   auto& [a, b, c, d] = v;
   return std::tie(a, b, c, d);
+}
+auto of(Maybe<RestShape> auto& v) {
+  auto& [a, b] = v;
+  return std::tie(a, b);
 }
 auto of(Maybe<Sites> auto& v) {
   auto& [a, b, c, d] = v;

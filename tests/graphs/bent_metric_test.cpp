@@ -1,0 +1,88 @@
+// The figures in which an artist bends the metric, run as a user runs them and measured on the files alone.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "geometry/convex_hull.h"
+#include "support/exported_pieces.h"
+#include "support/program.h"
+
+namespace sherd {
+namespace {
+
+const std::string kFigures = SHERD_SOURCE_DIR "/graphs/figures/";
+const std::string kAssets = SHERD_SOURCE_DIR "/assets/";
+const std::string kQuick = " --set picture.width=120 --set picture.height=64 --set picture.samples=1";
+
+void expectSound(const std::string& directory, const std::string& source) {
+  const ExportedReport report = measureExported(directory, source);
+  EXPECT_EQ(report.openEdges + report.lonelyCracks, 0u) << directory;
+  EXPECT_LT(report.volumeError, 1e-9) << directory;
+}
+
+/// Mean over pieces of their extent along an axis over that across.
+double meanElongation(const std::string& directory, const Vec3& axis) {
+  const auto json = nlohmann::json::parse(contentOf(directory + "/pieces.json"));
+  double sum = 0;
+  for (const auto& piece : json["pieces"]) {
+    Mat3 inertia;
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c)
+        inertia(r, c) = piece["inertia"][static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
+    const Mat3 second = 0.5 * inertia.trace() * Mat3::Identity() - inertia;
+    const double along = axis.normalized().dot(second * axis.normalized());
+    sum += std::sqrt(along / (0.5 * (second.trace() - along)));
+  }
+  return sum / static_cast<double>(json["pieces"].size());
+}
+
+/// Volume over that of the convex hulls, all pieces together.
+double convexity(const std::string& directory) {
+  const auto json = nlohmann::json::parse(contentOf(directory + "/pieces.json"));
+  double volumes = 0, hulls = 0;
+  for (const auto& piece : json["pieces"]) {
+    std::vector<Vec3> points;
+    for (const char* part : {"surface", "crack"})
+      for (const auto& triangle :
+           readObjTriangles(directory + "/" + piece[part].get<std::string>()).triangles)
+        for (const auto& p : triangle) points.emplace_back(p[0], p[1], p[2]);
+    const auto hull = convexHull(points);
+    EXPECT_TRUE(hull.ok());
+    hulls += hull->volume;
+    volumes += piece["volume"].get<double>();
+  }
+  return volumes / hulls;
+}
+
+TEST(BentMetric, Figure5HasAPreferredDirection) {
+  const ScratchDirectory scratch;
+  const std::string out = scratch.file("out");
+  const ProgramRun run = runProgram("run '" + kFigures + "figure5_anisotropy.json' --target all --var out='" +
+                                    out + "' --set tets.tets=1500" + kQuick);
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  for (const char* name : {"/elongation_1", "/elongation_5"}) expectSound(out + name, kAssets + "sphere.obj");
+  EXPECT_TRUE(std::filesystem::exists(out + "/sheet.png"));
+  const Vec3 axis(0.5, 1, 0);
+  const double plain = meanElongation(out + "/elongation_1", axis);
+  const double elongated = meanElongation(out + "/elongation_5", axis);
+  RecordProperty("plain", std::to_string(plain));
+  RecordProperty("elongated", std::to_string(elongated));
+  EXPECT_NEAR(plain, 1, 0.25);
+  EXPECT_GT(elongated, 2.5 * plain);
+}
+
+TEST(SlowBentMetric, Figure6HasConcavePieces) {
+  const ScratchDirectory scratch;
+  const std::string out = scratch.file("out");
+  const ProgramRun run =
+      runProgram("run '" + kFigures + "figure6_waves.json' --target all --var out='" + out + "'" + kQuick);
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  for (const char* name : {"/waves_0", "/waves_0.04"}) expectSound(out + name, kAssets + "table.obj");
+  const double plain = convexity(out + "/waves_0"), wavy = convexity(out + "/waves_0.04");
+  RecordProperty("plain", std::to_string(plain));
+  RecordProperty("wavy", std::to_string(wavy));
+  EXPECT_LT(wavy, plain - 0.05);
+}
+
+}  // namespace
+}  // namespace sherd
