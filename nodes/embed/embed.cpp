@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/parallel.h"
 #include "embed/convexity.h"
 #include "embed/extension.h"
 #include "embed/filter.h"
+#include "embed/fine_source.h"
 #include "embed/part.h"
 #include "embed/spectrum.h"
 #include "geometry/solid.h"
@@ -103,18 +105,26 @@ Result<Eigen::MatrixXd> extended(const BodyPart& part, const Eigen::MatrixXd& on
   return values;
 }
 
-/// Eigenvalues, and the modes at all nodes of the part.
-Result<Modes> modesOf(const BodyPart& part, const EmbedParams& params, const Exec& exec) {
-  if (params.source == EmbedParams::Source::Surface && part.shells == 1) {
-    SHERD_ASSIGN(Modes modes, lowestModes(surfaceLaplacian(part.borderPositions, part.borderTriangles),
-                                          params.dimensions, exec));
-    SHERD_ASSIGN(modes.functions, extended(part, modes.functions, params.extension, exec));
-    return modes;
-  }
-  if (params.source == EmbedParams::Source::Surface)
+/// Eigenvalues, and the modes at all nodes of the part. None where its surface does not hang together.
+Result<std::optional<Modes>> surfaceModes(const TetMesh& tets, const BodyPart& part,
+                                          const EmbedParams& params, const Exec& exec) {
+  if (params.source == EmbedParams::Source::Fine) return fineModes(tets, part, params, exec);
+  if (part.shells != 1) return std::optional<Modes>();
+  SHERD_ASSIGN(Modes modes, lowestModes(surfaceLaplacian(part.borderPositions, part.borderTriangles),
+                                        params.dimensions, exec));
+  SHERD_ASSIGN(modes.functions, extended(part, modes.functions, params.extension, exec));
+  return std::optional(std::move(modes));
+}
+
+Result<Modes> modesOf(const TetMesh& tets, const BodyPart& part, const EmbedParams& params,
+                      const Exec& exec) {
+  if (params.source != EmbedParams::Source::Solid) {
+    SHERD_ASSIGN(std::optional<Modes> modes, surfaceModes(tets, part, params, exec));
+    if (modes) return std::move(*modes);
     exec.info(
-        "a part of the body has a void, whose shell no surface connects with the outer one: modes of the "
-        "solid are taken for it");
+        "a part of the body has a surface that does not hang together, as around a void: modes of the solid "
+        "are taken for it");
+  }
   return lowestModes(solidLaplacian(part.positions, part.tets), params.dimensions, exec);
 }
 
@@ -139,8 +149,9 @@ Eigen::MatrixXd significantRows(const Eigen::MatrixXd& x, double tolerance) {
 }
 
 /// Modes times factors, after the positions times theirs where these count, d × nodes.
-Result<Eigen::MatrixXd> filtered(const BodyPart& part, const EmbedParams& params, const Exec& exec) {
-  SHERD_ASSIGN(const Modes modes, modesOf(part, params, exec));
+Result<Eigen::MatrixXd> filtered(const TetMesh& tets, const BodyPart& part, const EmbedParams& params,
+                                 const Exec& exec) {
+  SHERD_ASSIGN(const Modes modes, modesOf(tets, part, params, exec));
   if (params.filter == EmbedParams::Filter::Diffusion) {
     const Eigen::VectorXd factors = diffusionFilter(modes.eigenvalues, params.time);
     const Eigen::MatrixXd x =
@@ -157,8 +168,9 @@ Result<Eigen::MatrixXd> filtered(const BodyPart& part, const EmbedParams& params
 }
 
 /// One part's coordinates about its mean by volume, d × nodes.
-Result<Eigen::MatrixXd> embedPart(const BodyPart& part, const EmbedParams& params, const Exec& exec) {
-  SHERD_ASSIGN(Eigen::MatrixXd x, filtered(part, params, exec));
+Result<Eigen::MatrixXd> embedPart(const TetMesh& tets, const BodyPart& part, const EmbedParams& params,
+                                  const Exec& exec) {
+  SHERD_ASSIGN(Eigen::MatrixXd x, filtered(tets, part, params, exec));
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(x.rows());
   double total = 0;
   for (Eigen::Index n = 0; n < x.cols(); ++n) {
@@ -222,7 +234,7 @@ Result<Embedding> interior(const std::shared_ptr<const TetMesh>& tets, const std
   const std::vector<BodyPart> parts = bodyParts(*tets, places);
   std::vector<Eigen::MatrixXd> x;
   for (const BodyPart& part : parts) {
-    SHERD_ASSIGN(Eigen::MatrixXd coordinates, embedPart(part, params, exec));
+    SHERD_ASSIGN(Eigen::MatrixXd coordinates, embedPart(*tets, part, params, exec));
     x.push_back(std::move(coordinates));
     exec.progress(static_cast<double>(x.size()) / static_cast<double>(parts.size()));
   }
@@ -248,6 +260,9 @@ Result<Embedding> embed(const std::shared_ptr<const TetMesh>& tets, const EmbedP
       return euclidean(tets, places);
     }
   }
+  if (isWarped && params.source == EmbedParams::Source::Fine)
+    return failure("a rest shape warps the tetrahedra, not the surface that source: fine takes its modes of",
+                   "choose source: solid or surface", "source");
   return interior(tets, places, params, exec);
 }
 

@@ -19,6 +19,9 @@
 // - source surface: modes of the cage's boundary, carried inward by mean value coordinates or
 //   harmonically. From one side of a thin wall to the other it leads over the rim: with the diffusion
 //   filter cells split the wall in its thickness. A part with a void always takes solid.
+// - source fine: modes of the model's own surface (fine_source.h); nodes outside of it get those of its
+// closest
+//   point. Not for rest shapes, which have no surface of their own.
 //
 // Measured as stress: root mean square error of distances over that of lengths of geodesics, after
 // the best scaling. Bodies of cubes (U, open box with walls one cube thick, 7:1:1 bar, 3:2:2 box), and
@@ -57,9 +60,9 @@ namespace sherd {
 
 struct EmbedParams {
   enum class Metric { Auto, Euclidean, Interior };  ///< Auto: Euclidean where the body is convex
-  enum class Source { Solid, Surface };
+  enum class Source { Solid, Surface, Fine };
   enum class Filter { Fitted, Diffusion };
-  enum class Extension { MeanValue, Harmonic };  ///< of Source::Surface to interior nodes
+  enum class Extension { MeanValue, Harmonic };  ///< of Source::Surface and Fine to interior nodes
   Metric metric = Metric::Auto;
   Source source = Source::Solid;
   Filter filter = Filter::Fitted;

@@ -17,16 +17,19 @@ NodeType embedNode() {
           "auto: straight distances in a convex body, otherwise those inside; euclidean: straight ones, "
           "cells "
           "may reach across gaps; interior: always those inside")
-      .choice("source", &P::source, {{"solid", P::Source::Solid}, {"surface", P::Source::Surface}},
+      .choice("source", &P::source,
+              {{"solid", P::Source::Solid}, {"surface", P::Source::Surface}, {"fine", P::Source::Fine}},
               "what the eigenmodes are taken of. solid: the tetrahedra, right for thin walls; surface: their "
-              "boundary, as in Rustamov et al. 2009")
+              "boundary, as in Rustamov et al. 2009; fine: the model's own surface, which takes many times "
+              "longer")
       .choice("filter", &P::filter, {{"fitted", P::Filter::Fitted}, {"diffusion", P::Filter::Diffusion}},
               "how modes are weighed. fitted: so that distances match paths inside; diffusion: by exp(−λ t), "
               "as in "
               "Rustamov et al. 2009")
       .choice("extension", &P::extension,
               {{"harmonic", P::Extension::Harmonic}, {"mvc", P::Extension::MeanValue}},
-              "how surface modes are carried inward, where source is surface. mvc: mean value coordinates")
+              "how surface modes are carried inward, where source is surface or fine. mvc: mean value "
+              "coordinates")
       .integer("dimensions", &P::dimensions,
                {.unit = "", .min = 1, .max = 1000, .help = "eigenmodes computed, at most"})
       .number("tolerance", &P::tolerance,

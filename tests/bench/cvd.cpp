@@ -193,7 +193,7 @@ void paper(const Options& options, std::string& report) {
   table.write(options.out / "paper.csv");
   report +=
       "### The paper's cases\n\nLloyd: from sites drawn apart (∝ w d²) to the end of the iteration; grown: "
-      "from one site to N, each added to converged ones. The last three columns are means over ten seeds, "
+      "from one site to N, a few passes after each. The last three columns are means over ten seeds, "
       "over the best of 50 uniform draws.\n\n" +
       table.markdown() + "\n";
 }

@@ -39,7 +39,7 @@ Index nodeAt(const TetMesh& mesh, const Vec3& p) {
 /// All choices of the interior metric.
 std::vector<P> interiorChoices() {
   std::vector<P> all;
-  for (const auto source : {P::Source::Solid, P::Source::Surface})
+  for (const auto source : {P::Source::Solid, P::Source::Surface, P::Source::Fine})
     for (const auto filter : {P::Filter::Fitted, P::Filter::Diffusion})
       for (const auto extension : {P::Extension::MeanValue, P::Extension::Harmonic})
         all.push_back({.metric = P::Metric::Interior,
@@ -133,6 +133,19 @@ TEST(Embed, MatchesGeodesicsOfAU) {
   EXPECT_LT(fitted, paper);
 }
 
+/// Where the surface is the mesh's own border there is nothing to choose between.
+TEST(Embed, TheFineSurfaceIsTheCagesWhereTheyAreOne) {
+  const Mesh u = families::shared(families::uShape(2, 3, 7, 2, 0.1));
+  for (const auto extension : {P::Extension::MeanValue, P::Extension::Harmonic}) {
+    P params{.metric = P::Metric::Interior, .source = P::Source::Surface, .extension = extension};
+    const Embedding cage = embedded(u, params);
+    params.source = P::Source::Fine;
+    const Embedding fine = embedded(u, params);
+    for (Index n = 1; n < static_cast<Index>(u->nodes.size()); n += 3)
+      EXPECT_NEAR(distance(fine, 0, n), distance(cage, 0, n), 1e-6 * cage.diameter);
+  }
+}
+
 TEST(Embed, MovesWithTheBodyAndGrowsWithIt) {
   const TetMesh u = families::mapped(families::uShape(2, 3, 7, 2, 0.1),
                                      [](const Vec3& p) { return Vec3(p.x(), 1.13 * p.y(), 1.31 * p.z()); });
@@ -152,7 +165,7 @@ TEST(Embed, MovesWithTheBodyAndGrowsWithIt) {
 
 TEST(Embed, DiffusionMatchesEdgeLengthsInTheLeastSquaresSense) {
   const Mesh u = families::shared(families::uShape(2, 3, 7, 2, 0.1));
-  for (const auto source : {P::Source::Solid, P::Source::Surface}) {
+  for (const auto source : {P::Source::Solid, P::Source::Surface, P::Source::Fine}) {
     const Embedding e = embedded(u, {.source = source, .filter = P::Filter::Diffusion});
     double product = 0, square = 0;
     for (const auto& [a, b] : tetEdges(u->tets)) {
@@ -249,6 +262,7 @@ TEST(Embed, InteriorDistancesAreThoseOfTheRestShape) {
   const Mesh straight = families::shared(u), bent = families::shared(families::mapped(u, bend));
   const RestShape rest{straight, bent->nodes};
   for (const P& params : interiorChoices()) {
+    if (params.source == P::Source::Fine) continue;  // refused, below
     const auto a = embed(straight, params, {}, {.rest = &rest});
     ASSERT_TRUE(a.ok());
     const Embedding b = embedded(bent, params);
@@ -257,12 +271,24 @@ TEST(Embed, InteriorDistancesAreThoseOfTheRestShape) {
   }
 }
 
+TEST(Embed, RestShapesHaveNoFineSurface) {
+  const Mesh mesh = families::shared(families::uShape(2, 3, 7, 2, 0.1));
+  RestShape rest{mesh, mesh->nodes};
+  const P fine{.source = P::Source::Fine};
+  EXPECT_TRUE(embed(mesh, fine, {}, {.rest = &rest}).ok());  // as it is
+  for (Vec3& p : rest.positions) p.x() *= 2;
+  const auto refused = embed(mesh, fine, {}, {.rest = &rest});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().text().find("choose source: solid or surface"), std::string::npos);
+}
+
 TEST(Embed, TetrahedraInsideOutCountAsTheirMirrorImages) {
   const TetMesh u = families::uShape(2, 3, 7, 2, 0.1);
   const Mesh mesh = families::shared(u);
   RestShape mirrored{mesh, u.nodes};
   for (Vec3& p : mirrored.positions) p.x() = -p.x();
   for (const P& params : interiorChoices()) {
+    if (params.source == P::Source::Fine) continue;
     Said said;
     const auto a = embed(mesh, params, said.exec, {.rest = &mirrored});
     ASSERT_TRUE(a.ok()) << a.error().text();
