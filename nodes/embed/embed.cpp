@@ -13,6 +13,7 @@
 #include "embed/fine_source.h"
 #include "embed/part.h"
 #include "embed/spectrum.h"
+#include "embed/unfold.h"
 #include "geometry/solid.h"
 #include "geometry/tet_edges.h"
 
@@ -157,6 +158,10 @@ Result<Eigen::MatrixXd> filtered(const TetMesh& tets, const BodyPart& part, cons
     const Eigen::MatrixXd x =
         significantRows(factors.asDiagonal() * modes.functions.transpose(), params.tolerance);
     return Eigen::MatrixXd(edgeScale(part, x) * x);
+  }
+  if (params.filter == EmbedParams::Filter::Unfolded) {
+    SHERD_ASSIGN(const Eigen::MatrixXd x, unfolded(part, modes.functions, exec));
+    return significantRows(x, params.tolerance);
   }
   SHERD_ASSIGN(const FittedFilter factors, fittedFilter(part, modes.functions, exec));
   Eigen::MatrixXd x(modes.functions.cols() + 3, modes.functions.rows());

@@ -3,15 +3,13 @@
 // distance using barycentric coordinates".
 //
 // A convex body has its positions about the centroid for coordinates: nothing else is computed.
-// Any other gets its positions X and the lowest eigenmodes φ_k of a Laplacian, each times a factor:
-//
-//   x̄_n = (f_0 X_n, f_1 φ_1(n), f_2 φ_2(n), …)
-//
-// so that ‖x̄_i − x̄_j‖ is about the length of the shortest way from i to j inside (m).
+// Any other gets combinations of its positions X and the lowest eigenmodes φ_k of a Laplacian for coordinates
+// x̄_n, such that ‖x̄_i − x̄_j‖ is about the length of the shortest way from i to j inside (m).
 //
 // Choices
-// - filter fitted: f_k fitted to lengths of paths inside. Where the body is convex f_0 is near 1 and
-//   the modes near 0; modes come in where ways lead around something.
+// - filter unfolded: the linear map of (X, φ_1, …, φ_K) to at most eight dimensions that comes closest to the
+//   lengths of ways inside (unfold.h).
+// - filter fitted: x̄_n = (f_0 X_n, f_1 φ_1(n), f_2 φ_2(n), …) with factors fitted to these lengths.
 // - filter diffusion: f_0 = 0, f_k = exp(−λ_k t), t = time / λ_1, scaled so that embedded edges match
 //   edge lengths in the least-squares sense (Rustamov et al.).
 // - source solid: modes of the tetrahedral mesh itself. There is nothing to extend, and a void's
@@ -20,27 +18,27 @@
 //   harmonically. From one side of a thin wall to the other it leads over the rim: with the diffusion
 //   filter cells split the wall in its thickness. A part with a void always takes solid.
 // - source fine: modes of the model's own surface (fine_source.h); nodes outside of it get those of its
-// closest
-//   point. Not for rest shapes, which have no surface of their own.
+//   closest point. Not for rest shapes, which have no surface of their own.
 //
-// Measured as stress: root mean square error of distances over that of lengths of geodesics, after
-// the best scaling. Bodies of cubes (U, open box with walls one cube thick, 7:1:1 bar, 3:2:2 box), and
-// cages of 5,000 tetrahedra (horse, fertility) against path lengths:
+// Measured as stress: root mean square error of distances over that of lengths, after the best scaling.
+// Bodies over a plan, against exact shortest ways, and cages of 5,000 tetrahedra, against paths (tests/bench,
+// with times; 32 modes of the solid, horse 74, bunny 147):
 //
-//                               U    open box  bar   box   horse  fertility
-//   straight distances         0.31    0.12    0.00  0.01   0.12    0.11
-//   fitted, solid              0.11    0.08    0.02  0.02   0.07    0.07
-//   fitted, surface            0.10    0.11    0.02  0.02   0.06    0.07
-//   diffusion, surface, time ½ 0.16    0.36    0.12  0.08   0.16    0.17
-//   diffusion, solid, time ½   0.17    0.13    0.13  0.11   0.36    0.20
+//                               L     U     ring  spiral  horse  bunny
+//   straight distances         0.069 0.332  0.095  0.556  0.134  0.077
+//   unfolded                   0.029 0.031  0.077  0.023  0.032  0.019
+//   fitted                     0.046 0.110  0.074  0.098  0.079  0.049
+//   diffusion, time ½          0.210 0.179  0.141  0.112  0.351  0.485
+//   diffusion, surface         0.166 0.161  0.115  0.108  0.158  0.227
 //
-// No other time tried (⅛ to 1/128) and no power of λ tried (−½ to −3/2) is good on all. Fitted takes 6 to 19
-// dimensions. Under it edge lengths are met within 3 to 17 % rms (solid); under diffusion they are up to 75 %
-// off, since long bodies keep no coordinate across. One γ gives 6, 24, 95, 275 pieces of the box under fitted
-// where straight distances give 6, 23, 94, 264 (bar: 2, 4, 13, 35 and 2, 4, 10, 31; diffusion: 3, 4, 6, 8).
-// Harmonic extension and mean value coordinates differ by 0.001; the latter dip to −0.007 in the U.
+// No flat space holds the distances around a ring. More than 32 modes gain next to nothing under any filter;
+// source surface or fine, and the way of extension, change unfolded by 0.001. Edge lengths are met within 4
+// to 11 % rms (fitted: 3 to 50 %). For diffusion no other time tried (⅛ to 1/128) and no power of λ (−½ to
+// −3/2) is good on all: long bodies keep no coordinate across. One γ gives 7, 32, 126, 366 pieces of a 3:2:2
+// box under unfolded where straight distances give 7, 33, 125, 364 (7:1:1 bar: 2, 5, 20, 49 and 2, 5, 20, 48;
+// under diffusion 7, 21, 66, 144 and 3, 5, 6, 9).
 //
-// Deviation from the paper: the defaults are solid and fitted, for these reasons.
+// Deviation from the paper: the defaults are solid and unfolded, for these reasons.
 //
 // Rest shapes (the paper's section 2.4). Distances are those of the warped nodes, whatever they are used for:
 // straight ones between warped positions where the body as it is is convex (or metric is euclidean),
@@ -61,13 +59,13 @@ namespace sherd {
 struct EmbedParams {
   enum class Metric { Auto, Euclidean, Interior };  ///< Auto: Euclidean where the body is convex
   enum class Source { Solid, Surface, Fine };
-  enum class Filter { Fitted, Diffusion };
+  enum class Filter { Unfolded, Fitted, Diffusion };
   enum class Extension { MeanValue, Harmonic };  ///< of Source::Surface and Fine to interior nodes
   Metric metric = Metric::Auto;
   Source source = Source::Solid;
-  Filter filter = Filter::Fitted;
+  Filter filter = Filter::Unfolded;
   Extension extension = Extension::Harmonic;
-  int dimensions = 64;      ///< ≥ 1: modes computed, at most
+  int dimensions = 32;      ///< ≥ 1: modes computed, at most
   double tolerance = 1e-3;  ///< in [0, 1): modes whose part of the coordinates is smaller, relative to the
                             ///< largest, are left out
   double time = 0.5;        ///< > 0: t λ_1 of Filter::Diffusion

@@ -22,10 +22,15 @@ NodeType embedNode() {
               "what the eigenmodes are taken of. solid: the tetrahedra, right for thin walls; surface: their "
               "boundary, as in Rustamov et al. 2009; fine: the model's own surface, which takes many times "
               "longer")
-      .choice("filter", &P::filter, {{"fitted", P::Filter::Fitted}, {"diffusion", P::Filter::Diffusion}},
-              "how modes are weighed. fitted: so that distances match paths inside; diffusion: by exp(−λ t), "
-              "as in "
-              "Rustamov et al. 2009")
+      .choice("filter", &P::filter,
+              {{"unfolded", P::Filter::Unfolded},
+               {"fitted", P::Filter::Fitted},
+               {"diffusion", P::Filter::Diffusion}},
+              "how modes become coordinates. unfolded: combined so that straight distances match ways inside "
+              "best; "
+              "fitted: each weighed on its own to the same end; diffusion: weighed by exp(−λ t), as in "
+              "Rustamov et al. "
+              "2009")
       .choice("extension", &P::extension,
               {{"harmonic", P::Extension::Harmonic}, {"mvc", P::Extension::MeanValue}},
               "how surface modes are carried inward, where source is surface or fine. mvc: mean value "
@@ -48,6 +53,7 @@ NodeType embedNode() {
                "diffusion time in units of 1/λ_1, where filter is diffusion: short keeps local detail, long "
                "keeps the overall shape"})
       .output<Embedding>("embedding", "coordinates per node")
+      .implementation(2)
       .run([](const P& params, NodeIo& io) -> Result<void> {
         SHERD_ASSIGN(Embedding embedding, embed(io.in<TetMesh>("tets"), params, io.exec(),
                                                 {.rest = io.in<RestShape>("rest").get()}));

@@ -4,49 +4,12 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "embed/paths.h"
+#include "embed/landmarks.h"
 
 namespace sherd {
 namespace {
 
-constexpr std::size_t kLandmarks = 64;
 constexpr std::size_t kPartners = 2000;
-
-struct Landmark {
-  std::size_t node;
-  std::vector<double> length;  ///< m, of the shortest path to every node
-};
-
-/// Each the farthest from those before, beginning with node 0.
-std::vector<Landmark> landmarks(const PathGraph& graph, std::size_t nodes, const Exec& exec) {
-  std::vector<Landmark> marks;
-  std::vector<double> nearest(nodes, std::numeric_limits<double>::infinity());
-  std::size_t next = 0;
-  while (marks.size() < std::min(kLandmarks, nodes) && !exec.cancelled()) {
-    marks.push_back({next, graph.lengthsFrom(static_cast<Index>(next))});
-    for (std::size_t n = 0; n < nodes; ++n) nearest[n] = std::min(nearest[n], marks.back().length[n]);
-    // The first of those about as far: rounding must not choose between places that mirror each other.
-    const double farthest = *std::max_element(nearest.begin(), nearest.end());
-    next = static_cast<std::size_t>(
-        std::find_if(nearest.begin(), nearest.end(), [&](double d) { return d >= farthest * (1 - 1e-9); }) -
-        nearest.begin());
-    if (!(nearest[next] > 0)) break;
-  }
-  return marks;
-}
-
-/// How much longer paths are than the straight lines of pairs so near that they mostly see each other.
-double zigzag(const BodyPart& part, const std::vector<Landmark>& marks, double link) {
-  std::vector<double> ratio;
-  for (const Landmark& mark : marks)
-    for (std::size_t n = 0; n < part.positions.size(); ++n)
-      if (mark.length[n] > 3 * link && mark.length[n] < 8 * link)
-        ratio.push_back(mark.length[n] / (part.positions[n] - part.positions[mark.node]).norm());
-  if (ratio.empty()) return 1;
-  const auto middle = ratio.begin() + static_cast<std::ptrdiff_t>(ratio.size() / 2);
-  std::nth_element(ratio.begin(), middle, ratio.end());
-  return *middle;
-}
 
 /// The least-squares problem's normal equations: A g ≈ b, g_k = f_k².
 struct NormalEquations {
@@ -59,15 +22,14 @@ struct NormalEquations {
   }
 };
 
-NormalEquations equationsOf(const BodyPart& part, const Landmark& mark, double stretch,
-                            const Eigen::MatrixXd& functions) {
+NormalEquations equationsOf(const BodyPart& part, const Landmark& mark, const Eigen::MatrixXd& functions) {
   const std::size_t nodes = part.positions.size(), stride = (nodes + kPartners - 1) / kPartners;
   Eigen::MatrixXd rows(functions.cols() + 1, static_cast<Eigen::Index>((nodes + stride - 1) / stride));
   Eigen::VectorXd target(rows.cols());
   Eigen::Index used = 0;
   for (std::size_t n = 0; n < nodes; n += stride) {
     const double straight = (part.positions[n] - part.positions[mark.node]).norm();
-    const double distance = mark.length[n] / stretch;
+    const double distance = mark.length[n];
     if (!(distance > 0) || !std::isfinite(distance)) continue;
     const auto i = static_cast<Eigen::Index>(n), m = static_cast<Eigen::Index>(mark.node);
     // Errors of squared distances over distances are errors of distances, up to a factor.
@@ -111,15 +73,11 @@ Eigen::VectorXd diffusionFilter(const Eigen::VectorXd& eigenvalues, double time)
 }
 
 Result<FittedFilter> fittedFilter(const BodyPart& part, const Eigen::MatrixXd& functions, const Exec& exec) {
-  const PathGraph graph(part.positions, part.tets, part.neighbours);
-  if (exec.cancelled()) return cancelledError();
-  const std::vector<Landmark> marks = landmarks(graph, part.positions.size(), exec);
-  if (exec.cancelled()) return cancelledError();
-  const double stretch = zigzag(part, marks, graph.meanLink());
+  SHERD_ASSIGN(const std::vector<Landmark> marks, landmarksOf(part, exec));
   const Eigen::Index unknowns = functions.cols() + 1;
   const NormalEquations zero{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns)};
   const NormalEquations sum = parallelSum(exec, marks.size(), 1, zero, [&](std::size_t begin, std::size_t) {
-    return equationsOf(part, marks[begin], stretch, functions);
+    return equationsOf(part, marks[begin], functions);
   });
   if (exec.cancelled()) return cancelledError();
   const Eigen::VectorXd factors = nonNegativeSolution(sum).cwiseSqrt();

@@ -58,37 +58,40 @@ double stress(const Embedding& e, const std::vector<Pair>& pairs) {
   return std::sqrt(std::max(0.0, 1 - product * product / (square * size)));
 }
 
-struct Choice {
-  std::string name;
-  P params;
-};
-
 std::string nameOf(const P& p) {
   if (p.metric == P::Metric::Euclidean) return "straight";
   const char* source = p.source == P::Source::Solid  ? "solid"
                        : p.source == P::Source::Fine ? "fine"
                                                      : "surface";
-  const char* filter = p.filter == P::Filter::Fitted ? "fitted" : "diffusion";
+  const char* filter = p.filter == P::Filter::Unfolded ? "unfolded"
+                       : p.filter == P::Filter::Fitted ? "fitted"
+                                                       : "diffusion";
   const char* extension = p.source == P::Source::Solid            ? ""
                           : p.extension == P::Extension::Harmonic ? ", harmonic"
                                                                   : ", mvc";
   return fmt::format("{}, {}{}", filter, source, extension);
 }
 
+/// Embeddings of one body, timed together.
 struct Measured {
-  Embedding embedding;
-  double ms = 0, cpuMs = 0;
+  std::string name;
+  P params;
+  std::shared_ptr<Embedding> embedding = std::make_shared<Embedding>();
+  double ms() const { return medianOf(name); }
+  double processorMs() const { return processorMedianOf(name); }
 };
 
-Measured measure(const std::string& name, const Mesh& mesh, const P& params, int repetitions = 3) {
-  auto result = std::make_shared<Measured>();
-  timeOf(
-      name, repetitions, [=] { return orExit(embed(mesh, params, Exec{})); },
-      std::function<void(const Embedding&)>([result](const Embedding& e) { result->embedding = e; }));
+std::vector<Measured> measured(const std::string& body, const Mesh& mesh, const std::vector<P>& choices) {
+  std::vector<Measured> all;
+  for (const P& params : choices) {
+    Measured m{fmt::format("{}/{}/{}", body, nameOf(params), params.dimensions), params};
+    timeOf(
+        m.name, params.source == P::Source::Fine ? 2 : 3, [=] { return orExit(embed(mesh, params, Exec{})); },
+        std::function<void(const Embedding&)>([kept = m.embedding](const Embedding& e) { *kept = e; }));
+    all.push_back(std::move(m));
+  }
   runMeasured();
-  result->ms = medianOf(name);
-  result->cpuMs = processorMedianOf(name);
-  return *result;
+  return all;
 }
 
 struct Body {
@@ -117,11 +120,13 @@ std::vector<Pair> exactPairs(const families::Plan& plan, const TetMesh& mesh) {
   return pairs;
 }
 
-std::vector<P> choices() {
-  std::vector<P> all;
-  for (const auto filter : {P::Filter::Fitted, P::Filter::Diffusion})
+std::vector<P> choicesOverModes() {
+  std::vector<P> all{{.metric = P::Metric::Euclidean}};
+  for (const auto filter : {P::Filter::Unfolded, P::Filter::Fitted, P::Filter::Diffusion})
     for (const auto source : {P::Source::Solid, P::Source::Surface})
-      all.push_back({.metric = P::Metric::Interior, .source = source, .filter = filter});
+      for (const int modes : {4, 8, 16, 32, 64, 128})
+        all.push_back(
+            {.metric = P::Metric::Interior, .source = source, .filter = filter, .dimensions = modes});
   return all;
 }
 
@@ -131,37 +136,27 @@ void geodesics(const Options& options, std::string& report) {
   for (const Body& body : bodies()) {
     const Mesh mesh = families::shared(body.plan.mesh());
     const std::vector<Pair> pairs = exactPairs(body.plan, *mesh);
-    Plot plot{.title = "Error over time: " + body.name, .xLabel = "ms", .yLabel = "stress", .series = {}};
-    const auto row = [&](const P& params) {
-      const Measured m =
-          measure(fmt::format("{}/{}/{}", body.name, nameOf(params), params.dimensions), mesh, params);
-      const double error = stress(m.embedding, pairs);
-      const bool straight = params.metric == P::Metric::Euclidean;
-      table.row({body.name, count(mesh->nodes.size()), nameOf(params),
-                 straight ? "" : count(static_cast<std::size_t>(params.dimensions)),
-                 count(static_cast<std::size_t>(m.embedding.coordinates.rows())), number(error), number(m.ms),
-                 number(m.cpuMs)});
-      return std::pair(m.ms, error);
-    };
-    row({.metric = P::Metric::Euclidean});
-    for (P params : choices()) {
-      Series series{.name = nameOf(params), .x = {}, .y = {}};
-      for (const int modes : {4, 8, 16, 32, 64, 128}) {
-        params.dimensions = modes;
-        const auto [ms, error] = row(params);
-        series.x.push_back(ms);
-        series.y.push_back(error);
-      }
-      plot.series.push_back(std::move(series));
+    Plot plot{.title = body.name, .xLabel = "ms", .yLabel = "stress", .series = {}};
+    for (const Measured& m : measured(body.name, mesh, choicesOverModes())) {
+      const double error = stress(*m.embedding, pairs);
+      const bool straight = m.params.metric == P::Metric::Euclidean;
+      table.row({body.name, count(mesh->nodes.size()), nameOf(m.params),
+                 straight ? "" : count(static_cast<std::size_t>(m.params.dimensions)),
+                 count(static_cast<std::size_t>(m.embedding->coordinates.rows())), number(error),
+                 number(m.ms()), number(m.processorMs())});
+      if (plot.series.empty() || plot.series.back().name != nameOf(m.params))
+        plot.series.push_back({.name = nameOf(m.params), .x = {}, .y = {}});
+      plot.series.back().x.push_back(m.ms());
+      plot.series.back().y.push_back(error);
     }
     plots.push_back(std::move(plot));
   }
   writePlots(options.out / "geodesics.svg", plots);
   table.write(options.out / "geodesics.csv");
   report +=
-      "### Against exact shortest ways\n\nBodies of cubes over a plan; every second pair of nodes. Stress: "
-      "root mean "
-      "square error of distances over that of lengths, after the best scaling.\n\n" +
+      "### Against exact shortest ways\n\nBodies of cubes over a plan. Stress: root mean square error of "
+      "distances "
+      "over that of lengths, after the best scaling.\n\n" +
       table.markdown() + "\n";
 }
 
@@ -184,6 +179,20 @@ struct ModelCase {
   double goal, fineGoal;  ///< s
 };
 
+std::vector<P> choicesOf(int modes) {
+  std::vector<P> all{{.metric = P::Metric::Euclidean, .dimensions = modes}};
+  for (const auto filter : {P::Filter::Unfolded, P::Filter::Fitted, P::Filter::Diffusion})
+    for (const auto source : {P::Source::Solid, P::Source::Surface, P::Source::Fine})
+      for (const auto extension : {P::Extension::Harmonic, P::Extension::MeanValue})
+        if (source != P::Source::Solid || extension == P::Extension::Harmonic)
+          all.push_back({.metric = P::Metric::Interior,
+                         .source = source,
+                         .filter = filter,
+                         .extension = extension,
+                         .dimensions = modes});
+  return all;
+}
+
 void models(const Options& options, std::string& report) {
   Table table(
       {"model", "triangles", "nodes", "choice", "modes", "dimensions", "stress", "s", "goal s", "cpu s"});
@@ -198,22 +207,14 @@ void models(const Options& options, std::string& report) {
         orExit(test::prepareCells(file, {.tets = c.tets, .counts = {7}}, test::defaultStore()));
     const Mesh mesh = prepared.embedding->tets;
     const std::vector<Pair> pairs = pathPairs(*mesh);
-    const auto row = [&](P params) {
-      params.dimensions = c.modes;
-      const bool fine = params.source == P::Source::Fine;
-      const Measured m = measure(fmt::format("{}/{}", c.name, nameOf(params)), mesh, params, fine ? 1 : 3);
-      table.row({c.name, count(mesh->surface->triangles.size()), count(mesh->nodes.size()), nameOf(params),
+    for (const Measured& m : measured(c.name, mesh, choicesOf(c.modes))) {
+      const bool fine = m.params.source == P::Source::Fine;
+      table.row({c.name, count(mesh->surface->triangles.size()), count(mesh->nodes.size()), nameOf(m.params),
                  count(static_cast<std::size_t>(c.modes)),
-                 count(static_cast<std::size_t>(m.embedding.coordinates.rows())),
-                 number(stress(m.embedding, pairs)), number(m.ms / 1000), number(fine ? c.fineGoal : c.goal),
-                 number(m.cpuMs / 1000)});
-    };
-    row({.metric = P::Metric::Euclidean});
-    for (const auto filter : {P::Filter::Fitted, P::Filter::Diffusion})
-      for (const auto source : {P::Source::Solid, P::Source::Surface, P::Source::Fine})
-        for (const auto extension : {P::Extension::Harmonic, P::Extension::MeanValue})
-          if (source != P::Source::Solid || extension == P::Extension::Harmonic)
-            row({.metric = P::Metric::Interior, .source = source, .filter = filter, .extension = extension});
+                 count(static_cast<std::size_t>(m.embedding->coordinates.rows())),
+                 number(stress(*m.embedding, pairs)), number(m.ms() / 1000),
+                 number(fine ? c.fineGoal : c.goal), number(m.processorMs() / 1000)});
+    }
   }
   table.write(options.out / "models.csv");
   report +=

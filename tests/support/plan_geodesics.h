@@ -71,8 +71,15 @@ class PlanGeodesics {
  private:
   static constexpr double kFar = std::numeric_limits<double>::infinity();
 
-  /// Does the segment meet the inside of no empty square?
+  /// Is the segment inside, or along the border? One along a grid line is where it is on either side of it.
   bool sees(const Vec2& p, const Vec2& q) const {
+    const Vec2 across = kAside * Vec2(p.y() - q.y(), q.x() - p.x()).normalized();
+    if (!across.allFinite()) return true;
+    return isFree(p + across, q + across) || isFree(p - across, q - across);
+  }
+
+  /// Does the segment meet the inside of no empty square?
+  bool isFree(const Vec2& p, const Vec2& q) const {
     const int i0 = static_cast<int>(std::floor(std::min(p.x(), q.x()))),
               i1 = static_cast<int>(std::ceil(std::max(p.x(), q.x())));
     const int j0 = static_cast<int>(std::floor(std::min(p.y(), q.y()))),
@@ -83,19 +90,21 @@ class PlanGeodesics {
     return true;
   }
 
-  /// The open segment against the open unit square, by clipping; touching does not count.
+  static constexpr double kAside = 1e-6;
+
+  /// The segment against the unit square, by clipping. What moving it aside adds at its ends does not count.
   static bool meetsInside(const Vec2& p, const Vec2& q, const Vec2& low) {
     double from = 0, to = 1;
     for (Eigen::Index axis = 0; axis < 2; ++axis) {
       const double direction = q[axis] - p[axis], a = low[axis] - p[axis], b = a + 1;
       if (std::abs(direction) < 1e-12) {
-        if (a >= -1e-9 || b <= 1e-9) return false;
+        if (a >= 0 || b <= 0) return false;
         continue;
       }
       from = std::max(from, std::min(a / direction, b / direction));
       to = std::min(to, std::max(a / direction, b / direction));
     }
-    return to - from > 1e-9;
+    return (to - from) * (q - p).norm() > 10 * kAside;
   }
 
   Plan plan_;

@@ -8,6 +8,7 @@
 #include "geometry/tet_edges.h"
 #include "graph/node_type.h"
 #include "predict_degree/predict_degree.h"
+#include "support/plan_geodesics.h"
 #include "support/said.h"
 #include "support/tet_families.h"
 
@@ -40,7 +41,7 @@ Index nodeAt(const TetMesh& mesh, const Vec3& p) {
 std::vector<P> interiorChoices() {
   std::vector<P> all;
   for (const auto source : {P::Source::Solid, P::Source::Surface, P::Source::Fine})
-    for (const auto filter : {P::Filter::Fitted, P::Filter::Diffusion})
+    for (const auto filter : {P::Filter::Unfolded, P::Filter::Fitted, P::Filter::Diffusion})
       for (const auto extension : {P::Extension::MeanValue, P::Extension::Harmonic})
         all.push_back({.metric = P::Metric::Interior,
                        .source = source,
@@ -92,45 +93,78 @@ TEST(Embed, TheWayAcrossAGapLeadsAround) {
 }
 
 /// Ways in the U's plane: straight where the inner corners let them, otherwise over one or both of these.
-TEST(Embed, MatchesGeodesicsOfAU) {
-  const Mesh u = families::shared(families::uShape(3, 4, 12, 3, 0.1));
-  auto geodesic = [](Vec3 a, Vec3 b) {
-    const double depth = a.z() - b.z();
-    if (a.x() > b.x()) std::swap(a, b);
-    const Vec2 left(0.3, 0.3), right(0.7, 0.3), from = a.head<2>(), to = b.head<2>();
-    auto above = [](const Vec2& p, const Vec2& q, const Vec2& c) {  // is the line p–q above c?
-      return (q - p).x() * (c - p).y() - (q - p).y() * (c - p).x() < -1e-12;
-    };
-    auto open = [&](const Vec2& p, const Vec2& q) {
-      return !(p.x() < 0.3 + 1e-9 && q.x() > 0.3 + 1e-9 && above(p, q, left)) &&
-             !(p.x() < 0.7 - 1e-9 && q.x() > 0.7 - 1e-9 && above(p, q, right));
-    };
-    const double over = (left - from).norm(), under = (to - right).norm();
-    double length = over + 0.4 + under;
-    if (open(from, right)) length = std::min(length, (right - from).norm() + under);
-    if (open(left, to)) length = std::min(length, over + (to - left).norm());
-    if (open(from, to)) length = (to - from).norm();
-    return std::hypot(length, depth);
+/// Root mean square error of distances over that of shortest ways, after the best scaling.
+double stressOf(const Embedding& e, const families::PlanGeodesics& ways) {
+  const std::vector<Vec3>& nodes = e.tets->nodes;
+  std::vector<std::vector<double>> reach;
+  for (const Vec3& p : nodes) reach.push_back(ways.reach(p));
+  double product = 0, square = 0, size = 0;
+  for (std::size_t a = 0; a < nodes.size(); a += 2)
+    for (std::size_t b = a + 1; b < nodes.size(); b += 3) {
+      const double length = ways.length(nodes[a], reach[a], nodes[b], reach[b]);
+      const double d = distance(e, static_cast<Index>(a), static_cast<Index>(b));
+      product += d * length;
+      square += d * d;
+      size += length * length;
+    }
+  return std::sqrt(std::max(0.0, 1 - product * product / (square * size)));
+}
+
+TEST(PlanGeodesics, OfAUAndARing) {
+  const families::PlanGeodesics u({{"#.#", "#.#", "###"}, 1});
+  const auto between = [](const families::PlanGeodesics& ways, const Vec3& a, const Vec3& b) {
+    return ways.length(a, ways.reach(a), b, ways.reach(b));
   };
-  auto stress = [&](const Embedding& e) {
-    double error = 0, size = 0;
-    for (std::size_t a = 0; a < u->nodes.size(); ++a)
-      for (std::size_t b = a + 1; b < u->nodes.size(); ++b) {
-        const double d = geodesic(u->nodes[a], u->nodes[b]);
-        error += std::pow(distance(e, static_cast<Index>(a), static_cast<Index>(b)) - d, 2);
-        size += d * d;
-      }
-    return std::sqrt(error / size);
+  EXPECT_DOUBLE_EQ(between(u, {0, 0, 0}, {3, 0, 1}), std::hypot(3, 1));  // along the bridge
+  EXPECT_DOUBLE_EQ(between(u, {1, 3, 0}, {2, 3, 0}), 2 + 1 + 2);         // down, over, up
+  EXPECT_DOUBLE_EQ(between(u, {0, 3, 0}, {3, 3, 1}), std::hypot(2 * std::sqrt(5) + 1, 1));
+  EXPECT_DOUBLE_EQ(between(u, {0, 3, 0}, {1, 0, 0}), std::sqrt(10));
+  const families::PlanGeodesics ring({{"###", "#.#", "###"}, 1});
+  EXPECT_DOUBLE_EQ(between(ring, {1, 1, 0}, {2, 2, 0}), 2);  // along the hole's border
+  EXPECT_DOUBLE_EQ(between(ring, {0, 1.5, 0}, {3, 1.5, 0}), 1 + 2 * std::hypot(1, 0.5));
+}
+
+TEST(Embed, UnfoldedMatchesShortestWaysInside) {
+  struct Case {
+    families::Plan plan;
+    double most;  ///< stress; no flat space holds a ring's distances
   };
-  const double straight = stress(embedded(u, {.metric = P::Metric::Euclidean}));
-  const double fitted = stress(embedded(u));
-  const double paper = stress(embedded(u, {.source = P::Source::Surface, .filter = P::Filter::Diffusion}));
-  RecordProperty("straight", std::to_string(straight));
-  RecordProperty("fitted", std::to_string(fitted));
-  RecordProperty("diffusion", std::to_string(paper));
-  EXPECT_LT(fitted, 0.16);
-  EXPECT_LT(fitted, 0.5 * straight);
-  EXPECT_LT(fitted, paper);
+  for (const auto& [plan, most] :
+       {Case{families::refined({{"#..", "#..", "###"}, 1}, 3), 0.035},
+        Case{families::refined({{"#.#", "#.#", "#.#", "###"}, 1}, 3), 0.04},
+        Case{families::refined({{"####", "#..#", "#..#", "####"}, 1}, 2), 0.09},
+        Case{{{"#######", "......#", "#####.#", "#...#.#", "#.###.#", "#.....#", "#######"}, 1}, 0.05}}) {
+    const Mesh mesh = families::shared(plan.mesh());
+    const families::PlanGeodesics ways(plan);
+    const double unfolded = stressOf(embedded(mesh), ways);
+    EXPECT_LT(unfolded, most) << plan.rows[0];
+    EXPECT_LT(unfolded, 0.85 * stressOf(embedded(mesh, {.metric = P::Metric::Euclidean}), ways));
+    EXPECT_LT(unfolded, stressOf(embedded(mesh, {.filter = P::Filter::Diffusion}), ways));
+    EXPECT_LT(unfolded, 1.1 * stressOf(embedded(mesh, {.filter = P::Filter::Fitted}), ways));
+  }
+}
+
+/// A bent plate has the distances of the flat one.
+TEST(Embed, BendingAPlateChangesNoDistance) {
+  const auto plate = [](double bend) {
+    return families::shared(families::mapped(families::box(24, 8, 1, Vec3(3, 1, 0.06)), [=](const Vec3& p) {
+      if (bend == 0) return p;
+      const double angle = bend * (p.x() / 3 - 0.5), radius = 3 / bend + 0.03 - p.z();
+      return Vec3(radius * std::sin(angle), p.y(), -radius * std::cos(angle));
+    }));
+  };
+  const Mesh flat = plate(0), bent = plate(3.5);
+  const Embedding e = embedded(bent, {.metric = P::Metric::Interior});
+  double error = 0, straight = 0, size = 0;
+  for (std::size_t a = 0; a < flat->nodes.size(); a += 7)
+    for (std::size_t b = a + 1; b < flat->nodes.size(); b += 5) {
+      const double d = (flat->nodes[a] - flat->nodes[b]).norm();
+      error += std::pow(distance(e, static_cast<Index>(a), static_cast<Index>(b)) - d, 2);
+      straight += std::pow((bent->nodes[a] - bent->nodes[b]).norm() - d, 2);
+      size += d * d;
+    }
+  EXPECT_LT(std::sqrt(error / size), 0.06);
+  EXPECT_GT(std::sqrt(straight / size), 0.2);
 }
 
 /// Where the surface is the mesh's own border there is nothing to choose between.
