@@ -8,6 +8,7 @@ NodeType repairNode();
 NodeType tetrahedralizeNode();
 NodeType warpRestNode();
 NodeType embedNode();
+NodeType protectNode();
 NodeType simulateNode();
 NodeType readVdbNode();
 NodeType paintBetaNode();
@@ -27,8 +28,8 @@ NodeType contactSheetNode();
 }  // namespace sherd
 
 SHERD_NODE_PACK(sherd::loadMeshNode, sherd::repairNode, sherd::tetrahedralizeNode, sherd::warpRestNode,
-                sherd::embedNode, sherd::simulateNode, sherd::readVdbNode, sherd::paintBetaNode,
-                sherd::writeVdbNode, sherd::weightsNode, sherd::predictDegreeNode, sherd::cvdNode,
-                sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
+                sherd::embedNode, sherd::protectNode, sherd::simulateNode, sherd::readVdbNode,
+                sherd::paintBetaNode, sherd::writeVdbNode, sherd::weightsNode, sherd::predictDegreeNode,
+                sherd::cvdNode, sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
                 sherd::exportCrackSurfaceNode, sherd::exportPiecesNode, sherd::exportProxiesNode,
                 sherd::previewNode, sherd::contactSheetNode)

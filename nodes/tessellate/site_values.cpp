@@ -30,6 +30,26 @@ bool undercuts(const std::array<const double*, 4>& g, Index w, Index k) {
   return g[0][w] < g[0][k] && g[1][w] < g[1][k] && g[2][w] < g[2][k] && g[3][w] < g[3][k];
 }
 
+/// Per node the least one of the same coordinates.
+std::vector<Index> firstOfPlace(const Eigen::MatrixXd& nodes) {
+  std::vector<Index> order(static_cast<std::size_t>(nodes.cols())), first(order.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  const auto compare = [&](Index a, Index b) {
+    const double *p = nodes.col(a).data(), *q = nodes.col(b).data();
+    return std::lexicographical_compare_three_way(p, p + nodes.rows(), q, q + nodes.rows());
+  };
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    const auto c = compare(a, b);
+    return c < 0 || (c == 0 && a < b);
+  });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool isFirst = i == 0 || compare(order[i - 1], order[i]) != 0;
+    first[static_cast<std::size_t>(order[i])] =
+        isFirst ? order[i] : first[static_cast<std::size_t>(order[i - 1])];
+  }
+  return first;
+}
+
 /// Per node the largest distance to a neighbour.
 std::vector<double> longestEdges(const Eigen::MatrixXd& nodes, std::span<const Tetra> tets) {
   std::vector<double> longest(static_cast<std::size_t>(nodes.cols()), 0);
@@ -61,10 +81,16 @@ SiteValues::SiteValues(const Partition& partition, const Exec& exec) : siteOf_(s
     const Eigen::MatrixXd block = nodes.middleCols(first, count).colwise() - mean;
     values_.middleCols(first, count).noalias() = -2 * (sites.transpose() * block);
     values_.middleCols(first, count).colwise() += squared;
-    for (Eigen::Index n = first; n < first + count; ++n) {
+  });
+  // A product's last bits may hang on where a column stands in its block.
+  const std::vector<Index> place = firstOfPlace(nodes);
+  for (std::size_t n = 0; n < place.size(); ++n)
+    if (place[n] != static_cast<Index>(n)) values_.col(static_cast<Eigen::Index>(n)) = values_.col(place[n]);
+  parallelFor(exec, least_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (auto n = static_cast<Eigen::Index>(begin); n < static_cast<Eigen::Index>(end); ++n) {
       const double* g = values_.col(n).data();
       least_[static_cast<std::size_t>(n)] = static_cast<Index>(std::min_element(g, g + siteOf_.size()) - g);
-      findNear(static_cast<std::size_t>(n), block.col(n - first).squaredNorm(),
+      findNear(static_cast<std::size_t>(n), (nodes.col(n) - mean).squaredNorm(),
                longest[static_cast<std::size_t>(n)]);
     }
   });

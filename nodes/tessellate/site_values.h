@@ -4,7 +4,8 @@
 //
 // is the squared distance of node n to site j without the term that all sites share. Within a tetrahedron x̄
 // is linear, so g_j is affine, and cell j is where g_j is least. The doubles g_j(n) are computed once;
-// everything that follows is exact in them.
+// everything that follows is exact in them. Nodes of one place in the embedding have the same
+// doubles.
 //
 // Ties. Sites are numbered by rank, their lexicographic order of coordinates (by index where these are
 // equal), so that a permutation of the sites changes no rank but those of coincident ones. Each g_j is

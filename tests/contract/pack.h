@@ -93,7 +93,7 @@ inline ContractExceptions packExceptions() {
       "Simulate.obstacle_poisson", "SelectPiece.poisson", "Simulate.poisson", "Simulate.restitution",
       "Tessellate.min_volume", "WarpRest.elongation",
       // values of whatever is painted
-      "PaintBeta.background", "PaintBeta.high", "PaintBeta.low", "PaintBeta.threshold",
+      "PaintBeta.background", "PaintBeta.high", "PaintBeta.low", "PaintBeta.threshold", "Protect.threshold",
       // an exponent
       "Weights.alpha",
       // directions

@@ -71,6 +71,33 @@ TEST(BentMetric, Figure5HasAPreferredDirection) {
   EXPECT_GT(elongated, 2.5 * plain);
 }
 
+/// Area of the cracks that come within a distance of a point, each counted by its two pieces.
+double crackNear(const std::string& directory, const Vec3& place, double distance) {
+  double area = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+    if (!entry.path().string().ends_with("_crack.obj")) continue;
+    for (const auto& t : readObjTriangles(entry.path()).triangles) {
+      const Vec3 a = Vec3::Map(t[0].data()), b = Vec3::Map(t[1].data()), c = Vec3::Map(t[2].data());
+      const double nearest = std::min(
+          {(a - place).norm(), (b - place).norm(), (c - place).norm(), ((a + b + c) / 3 - place).norm()});
+      if (nearest < distance) area += 0.5 * (b - a).cross(c - a).norm();
+    }
+  }
+  return area;
+}
+
+TEST(BentMetric, AProtectedRegionStaysWhole) {
+  const ScratchDirectory scratch;
+  const std::string out = scratch.file("out");
+  const ProgramRun run =
+      runProgram("run '" + kFigures + "protect.json' --target all --var out='" + out + "'" + kQuick);
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  for (const char* name : {"/protect_0", "/protect_1"}) expectSound(out + name, kAssets + "mushroom.obj");
+  const Vec3 dab(0.02, 0.1, 0.03);
+  EXPECT_GT(crackNear(out + "/protect_0", dab, 0.02), 1e-4);
+  EXPECT_EQ(crackNear(out + "/protect_1", dab, 0.02), 0);
+}
+
 TEST(SlowBentMetric, Figure6HasConcavePieces) {
   const ScratchDirectory scratch;
   const std::string out = scratch.file("out");

@@ -39,6 +39,7 @@ const std::vector<std::pair<std::string, Names>> kContracts{
     {"tetrahedralize", {}},
     {"warp_rest", {}},
     {"embed", {}},
+    {"protect", {}},
     {"rigid", {}},
     {"simulate", {"rigid"}},
     {"beta", {}},

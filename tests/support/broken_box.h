@@ -21,10 +21,11 @@ inline WeightField evenWeights(const std::shared_ptr<const TetMesh>& tets) {
   return field;
 }
 
-inline Fragments broken(const std::shared_ptr<const Embedding>& embedding, int degree) {
+inline Fragments broken(const std::shared_ptr<const Embedding>& embedding, int degree,
+                        const TessellateParams& mode = {}) {
   const auto cells = cvd(embedding, evenWeights(embedding->tets), nullptr, {.degree = degree}, Exec{});
   EXPECT_TRUE(cells.ok()) << (cells.ok() ? "" : cells.error().text());
-  auto pieces = tessellate(*cells, {}, Exec{});
+  auto pieces = tessellate(*cells, mode, Exec{});
   EXPECT_TRUE(pieces.ok()) << (pieces.ok() ? "" : pieces.error().text());
   return std::move(pieces).value();
 }
