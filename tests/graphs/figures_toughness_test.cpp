@@ -72,5 +72,64 @@ TEST(FiguresOfToughness, APieceCountThatCannotBeHadIsRefusedByName) {
   EXPECT_NE(none.output.find("the example has no energy"), std::string::npos) << none.output;
 }
 
+TEST(FiguresOfToughness, TheFirstOfManyIsTheTough) {
+  const ScratchDirectory scratch;
+  const ProgramRun run =
+      runFigure("figure2_toughness.json", scratch.file("out"),
+                " --var mesh='" + kAssets + "mushroom.obj' --set tets.tets=1300 --var height=3");
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  std::size_t last = 0;
+  for (const char* gamma : {"gamma_0.02", "gamma_0.005", "gamma_0.0015"}) {
+    const std::size_t cells = soundCells(scratch.file("out/") + gamma, "mushroom.obj");
+    EXPECT_GE(cells, last) << gamma;
+    last = cells;
+  }
+  EXPECT_TRUE(std::filesystem::exists(scratch.file("out/sheet.png")));
+}
+
+TEST(SlowFiguresOfToughness, AToughVaseBreaksIntoFewAndAFragileOneIntoMany) {
+  const ScratchDirectory scratch;
+  const ProgramRun run = runFigure("figure2_toughness.json", scratch.file("out"), "");
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  std::size_t last = 1;
+  for (const char* gamma : {"gamma_0.02", "gamma_0.005", "gamma_0.0015"}) {
+    const std::size_t cells = soundCells(scratch.file("out/") + gamma, "vase.obj");
+    EXPECT_GT(cells, last) << gamma;
+    last = cells;
+  }
+  EXPECT_GT(last, 40u);
+}
+
+/// The mean volume of the pieces nearer than `reach` (m) to where the ball hits, over that of all pieces.
+double sizeAtTheHit(const std::string& directory, double reach) {
+  double near = 0, all = 0;
+  int nearCount = 0, count = 0;
+  const nlohmann::json json = piecesOf(directory);
+  for (const auto& piece : json["pieces"]) {
+    const auto centre = piece["centre_of_mass"].get<std::array<double, 3>>();
+    const double volume = piece["volume"].get<double>();
+    all += volume, ++count;
+    if (std::hypot(centre[0] - (0.35 * 1.02 - 0.51), centre[1] - 0.6 * 0.84) > reach) continue;
+    near += volume, ++nearCount;
+  }
+  EXPECT_GT(nearCount, 2) << directory;
+  return near / nearCount / (all / count);
+}
+
+TEST(FiguresOfToughness, AlphaDecidesWhetherPiecesAreSmallAtTheHit) {
+  const ScratchDirectory scratch;
+  const ProgramRun run = runFigure("figure4_granularity.json", scratch.file("out"), "");
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  for (const char* alpha : {"alpha_0", "alpha_0.5", "alpha_1"})
+    EXPECT_EQ(soundCells(scratch.file("out/") + alpha, "wall.obj"), 40u);
+  const double even = sizeAtTheHit(scratch.file("out/alpha_0"), 0.25),
+               half = sizeAtTheHit(scratch.file("out/alpha_0.5"), 0.25),
+               small = sizeAtTheHit(scratch.file("out/alpha_1"), 0.25);
+  EXPECT_NEAR(even, 1, 0.25);
+  EXPECT_LT(half, even);
+  EXPECT_LT(small, half);
+  EXPECT_LT(small, 0.6);
+}
+
 }  // namespace
 }  // namespace sherd
