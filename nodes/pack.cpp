@@ -15,6 +15,7 @@ NodeType paintBetaNode();
 NodeType writeVdbNode();
 NodeType weightsNode();
 NodeType predictDegreeNode();
+NodeType calibrateToughnessNode();
 NodeType cvdNode();
 NodeType tessellateNode();
 NodeType selectPieceNode();
@@ -30,6 +31,6 @@ NodeType contactSheetNode();
 SHERD_NODE_PACK(sherd::loadMeshNode, sherd::repairNode, sherd::tetrahedralizeNode, sherd::warpRestNode,
                 sherd::embedNode, sherd::protectNode, sherd::simulateNode, sherd::readVdbNode,
                 sherd::paintBetaNode, sherd::writeVdbNode, sherd::weightsNode, sherd::predictDegreeNode,
-                sherd::cvdNode, sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
-                sherd::exportCrackSurfaceNode, sherd::exportPiecesNode, sherd::exportProxiesNode,
-                sherd::previewNode, sherd::contactSheetNode)
+                sherd::calibrateToughnessNode, sherd::cvdNode, sherd::tessellateNode, sherd::selectPieceNode,
+                sherd::convexProxiesNode, sherd::exportCrackSurfaceNode, sherd::exportPiecesNode,
+                sherd::exportProxiesNode, sherd::previewNode, sherd::contactSheetNode)

@@ -14,7 +14,8 @@ NodeType predictDegreeNode() {
            .min = 0,
            .help =
                "threshold γ: sites are added until E_D falls below it. Higher: tougher, fewer pieces; E_D "
-               "falls about as N^(-2/3), so a tenth of γ gives some thirty times as many"})
+               "falls about as N^(-2/3), so a tenth of γ gives some thirty times as many. May be wired to "
+               "CalibrateToughness.gamma"})
       .integer("degree", &PredictDegreeParams::degree,
                {.unit = "", .min = 0, .max = 1e6, .help = "number of sites whatever γ; 0: from the energy"})
       .integer("seed", &PredictDegreeParams::seed, {.unit = "", .help = "another seed gives other sites"})

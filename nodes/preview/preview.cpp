@@ -51,8 +51,10 @@ Result<std::vector<Panel>> makePanels(const Fragments& f, const EnergyField* ene
   const PictureSpace space = PictureSpace::of(body);
   const std::vector<Vec3> normals = shadingNormals(body);
   std::vector<Panel> panels;
-  SHERD_ASSIGN(Scene before, Scene::make(wholeSoup(body, normals, space, kClay), exec));
-  panels.push_back({std::move(before), "before", {}});
+  if (params.before) {
+    SHERD_ASSIGN(Scene before, Scene::make(wholeSoup(body, normals, space, kClay), exec));
+    panels.push_back({std::move(before), "before", {}});
+  }
   SHERD_ASSIGN(const std::vector<std::vector<Vec3>> cracks, crackNormals(f, exec));
   SHERD_ASSIGN(Scene pieces, Scene::make(piecesSoup(f, normals, cracks, space, params.explode), exec));
   panels.push_back({std::move(pieces), countOf(f.pieces.size()), {}});

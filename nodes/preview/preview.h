@@ -24,12 +24,14 @@ struct PreviewParams {
   int samples = 8;   ///< per pixel, in [1, 1024]
   double explode =
       0.35;  ///< how far apart: each piece moves by this times (its centre − the body's centre), in [0, 4]
+  bool before = true;  ///< a panel with the object before
 };
 
-/// Two panels, three with `energy` (may be null). Pieces have one colour each; crack faces are the pale
-/// version of it. The energy panel shows the energy's density, J/m³, on a logarithmic scale up to its 99.5th
-/// percentile, over at most four decades. Fragments and energy must have their tetrahedra and surface.
-/// Errors: parameters out of range, no pieces, Embree fails. Cost O(pixels · samples · log triangles).
+/// Two panels, three with `energy` (may be null), without `before` one less. Pieces have one colour each;
+/// crack faces are the pale version of it. The energy panel shows the energy's density, J/m³, on a
+/// logarithmic scale up to its 99.5th percentile, over at most four decades. Fragments and energy must have
+/// their tetrahedra and surface. Errors: parameters out of range, no pieces, Embree fails. Cost O(pixels ·
+/// samples · log triangles).
 Result<Picture> renderPreview(const Fragments& fragments, const EnergyField* energy,
                               const PreviewParams& params, const Exec& exec);
 

@@ -25,6 +25,7 @@ NodeType previewNode() {
            .min = 0,
            .max = 4,
            .help = "how far apart: each piece moves by this share of its distance from the body's centre"})
+      .boolean("before", &Params::before, "whether the object before it breaks has a panel, too")
       .output<std::string>("file", "path of the PNG")
       .output<Picture>("picture", "the picture itself, for a ContactSheet")
       .implementation(3)

@@ -82,11 +82,11 @@ inline ContractExceptions packExceptions() {
   ContractExceptions exceptions;
   exceptions.dimensionless = {
       // counts
-      "ContactSheet.columns", "ConvexProxies.max_hulls", "CVD.degree", "CVD.max_iterations",
-      "Embed.dimensions", "PredictDegree.degree", "PredictDegree.max_degree", "Preview.samples",
-      "Repair.resolution", "SelectPiece.number", "Tetrahedralize.tets",
+      "CalibrateToughness.pieces", "ContactSheet.columns", "ConvexProxies.max_hulls", "CVD.degree",
+      "CVD.max_iterations", "Embed.dimensions", "PredictDegree.degree", "PredictDegree.max_degree",
+      "Preview.samples", "Repair.resolution", "SelectPiece.number", "Tetrahedralize.tets",
       // seeds
-      "CVD.seed", "PaintBeta.seed", "PredictDegree.seed", "WarpRest.seed",
+      "CVD.seed", "CalibrateToughness.seed", "PaintBeta.seed", "PredictDegree.seed", "WarpRest.seed",
       // shares and ratios of equal quantities
       "ConvexProxies.tolerance", "CVD.tolerance", "Embed.tolerance", "Embed.time", "Preview.explode",
       "Repair.crack", "Repair.leaf", "Repair.small_hole", "Simulate.ball_target", "Simulate.friction",

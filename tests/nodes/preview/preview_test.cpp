@@ -101,6 +101,20 @@ TEST(Preview, PanelsShowBodyPiecesAndEnergy) {
   EXPECT_GT(colourfulness(three, 160, 240), 2 * colourfulness(three, 0, 80));
 }
 
+TEST(Preview, PiecesAloneFillThePicture) {
+  const Fragments f = test::slicedBox(3);
+  const EnergyField energy = energyOn(f.tets->surface);
+  PreviewParams params = small();
+  params.before = false;
+  const Picture one = mustRender(f, nullptr, params), two = mustRender(f, &energy, params);
+  const Picture both = mustRender(f, nullptr, small());
+  // No half of it is grey, as the object before is.
+  EXPECT_GT(colourfulness(one, 0, 120), 2 * colourfulness(both, 0, 120));
+  EXPECT_GT(colourfulness(one, 120, 240), 2 * colourfulness(both, 0, 120));
+  EXPECT_GT(colourfulness(two, 0, 120), 2 * colourfulness(both, 0, 120));
+  EXPECT_GT(colourfulness(two, 120, 240), 2 * colourfulness(both, 0, 120));
+}
+
 TEST(Preview, UnbrokenBodyIsDrawn) {
   const Picture image = mustRender(test::slicedBox(1), nullptr, small());
   EXPECT_GT(coloursIn(image, 120, 240), 50u);
