@@ -35,8 +35,7 @@ Result<Step> stepTo(std::size_t wanted, const WeightField& weights, const Embedd
     return failure("the example has no energy that could break it: E_D is 0",
                    "let it fall from higher, or throw faster, so that it is hit", "weights");
   while (lloyd.siteCount() < wanted) {
-    SHERD_ASSIGN(const bool grown,
-                 growSite(lloyd, embedding, weights, Growth::ByEnergy, seed, LloydLimits{}, exec));
+    SHERD_ASSIGN(const bool grown, growSite(lloyd, embedding, weights, Growth::ByEnergy, seed, exec));
     if (!grown)
       return failure(fmt::format("it can't break into {}: only {} nodes of the tetrahedral mesh hold energy",
                                  sitesText(wanted), lloyd.siteCount()),

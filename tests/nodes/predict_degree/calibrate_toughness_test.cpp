@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
+#include "cvd/cvd.h"
 #include "graph/node_type.h"
 #include "predict_degree/predict_degree.h"
 #include "support/lloyd_reference.h"
@@ -63,13 +64,15 @@ TEST(CalibrateToughness, TheSameHitBreaksIntoExactlySoMany) {
 
 TEST(CalibrateToughness, IsTheGeometricMeanOfTheEndsAndTheyAreSharp) {
   const Cloud c = cloud(300, 6, 3);
-  const auto energy = [&](int degree) {
-    const auto sites = predictDegree(c.weights, *c.embedding, {.degree = degree}, Exec{});
-    EXPECT_TRUE(sites.ok());
-    return sites->energy;
-  };
+  Lloyd lloyd(*c.embedding, c.weights);  // the search's path
+  lloyd.addSite(bodyCentroid(*c.embedding, c.weights), {});
+  std::vector<double> path{NAN, lloyd.energy()};
+  while (path.size() <= 30) {
+    ASSERT_TRUE(growSite(lloyd, *c.embedding, c.weights, Growth::ByEnergy, 1, {}).value());
+    path.push_back(lloyd.energy());
+  }
   for (const int pieces : {2, 9, 30}) {
-    const double below = energy(pieces), before = energy(pieces - 1);
+    const double below = path[at(pieces)], before = path[at(pieces - 1)];
     EXPECT_NEAR(calibrate(c, pieces), std::sqrt(below * before), 1e-14 * before);
     EXPECT_EQ(sitesOf(c, before), pieces);
     EXPECT_GT(sitesOf(c, below), pieces);
