@@ -6,6 +6,7 @@
 #include "base/atomic_file.h"
 #include "base/partial_file.h"
 #include "faults/program_process.h"
+#include "support/sanitizers.h"
 
 namespace sherd::faults {
 namespace {
@@ -27,6 +28,7 @@ namespace {
 }
 
 TEST(PartialFiles, NoneIsLeftWhileThreadsGoOnWriting) {
+  if (test::kThreadSanitizer) GTEST_SKIP() << "the thread sanitizer starts no threads after a fork";
   const ScratchDirectory scratch;
   Random random(1);
   std::size_t written = 0;
