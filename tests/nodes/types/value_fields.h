@@ -85,8 +85,8 @@ auto of(Maybe<Embedding> auto& v) {
   return std::tie(a, b, c, d);
 }
 auto of(Maybe<Sites> auto& v) {
-  auto& [a, b, c, d] = v;
-  return std::tie(a, b, c, d);
+  auto& [a, b, c, d, e] = v;
+  return std::tie(a, b, c, d, e);
 }
 auto of(Maybe<Partition> auto& v) {
   auto& [a, b, c, d, e, f, g, h, i] = v;
