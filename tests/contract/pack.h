@@ -89,9 +89,9 @@ inline ContractExceptions packExceptions() {
       "CalibrateToughness.seed", "CVD.seed", "PaintBeta.seed", "PredictDegree.seed",
       // shares and ratios of equal quantities
       "ConvexProxies.tolerance", "CVD.tolerance", "Embed.tolerance", "Embed.time", "Preview.explode",
-      "Repair.crack", "Repair.leaf", "Repair.small_hole", "Simulate.ball_target", "Simulate.friction",
-      "Simulate.obstacle_poisson", "SelectPiece.poisson", "Simulate.poisson", "Simulate.restitution",
-      "Tessellate.min_volume",
+      "Preview.slice_at", "Repair.crack", "Repair.leaf", "Repair.small_hole", "Simulate.ball_target",
+      "Simulate.friction", "Simulate.obstacle_poisson", "SelectPiece.poisson", "Simulate.poisson",
+      "Simulate.restitution", "Tessellate.min_volume",
       // values of whatever is painted
       "PaintBeta.background", "PaintBeta.high", "PaintBeta.low", "PaintBeta.threshold",
       // an exponent
