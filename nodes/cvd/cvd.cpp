@@ -10,12 +10,10 @@ Result<void> checkStart(const Embedding& embedding, const Sites* start, const Cv
     if (params.degree > 0) return {};
     return failure("neither sites nor their number are given", "wire `sites`, or set `degree`", "degree");
   }
-  if (start->positions.cols() == 0) return failure("there are no sites", {}, "sites");
-  if (start->positions.rows() != embedding.coordinates.rows())
-    return failure(fmt::format("the sites have {} dimensions, the embedding {}", start->positions.rows(),
-                               embedding.coordinates.rows()),
-                   "sites have to come from a search in this embedding", "sites");
-  if (!start->positions.allFinite()) return failure("a site is not at a finite place", {}, "sites");
+  SHERD_CHECK(checkSites(embedding, *start, "sites"));
+  if (params.degree > 0 && params.degree < start->pinned)
+    return failure(fmt::format("{} sites are pinned, but only {} are wanted", start->pinned, params.degree),
+                   "ask for at least as many as are pinned, or pin fewer", "degree");
   return {};
 }
 
@@ -36,6 +34,19 @@ std::string report(const Partition& cells) {
                      cells.siteCount() == 1 ? "site" : "sites", cells.energy, threshold,
                      cells.converged ? "converged after" : "not converged after", cells.iterations,
                      cells.iterations == 1 ? "pass" : "passes");
+}
+
+/// Pins that no node is nearest to have no cell.
+void warnOfEmptyPins(const Lloyd& lloyd, const Exec& exec) {
+  std::vector<char> isEmpty(lloyd.pinnedCount(), 1);
+  for (const Index site : lloyd.labels())
+    if (at(site) < isEmpty.size()) isEmpty[at(site)] = 0;
+  for (std::size_t j = 0; j < isEmpty.size(); ++j)
+    if (isEmpty[j])
+      exec.warn(fmt::format(
+          "pin {} gets no cell: every node of the tetrahedral mesh is nearer to another site; refine "
+          "it (Tetrahedralize.tets), or move the pins apart",
+          j + 1));
 }
 
 /// Grows as many sites as are wanted and possible, and runs Lloyd's iteration to its end. One site stays put.
@@ -71,16 +82,18 @@ Result<Partition> cvd(const std::shared_ptr<const Embedding>& embedding, const W
   const std::size_t degree = params.degree == 0 ? given : static_cast<std::size_t>(params.degree);
   const bool fromGiven = given > 0 && given <= degree && degree > 1;
   if (given > degree)
-    exec.info(fmt::format("{} sites were given, {} are wanted: grown anew from one", given, degree));
+    exec.info(fmt::format("{} sites were given, {} are wanted: grown anew from {}", given, degree,
+                          start->pinned > 0 ? "those pinned" : "one"));
 
   const LloydLimits limits{params.tolerance, params.maxIterations};
-  Lloyd lloyd(*embedding, weights);
-  if (fromGiven)
+  Lloyd lloyd = fromGiven ? Lloyd(*embedding, weights) : firstSites(*embedding, weights, start, exec);
+  if (fromGiven) {
     for (Eigen::Index j = 0; j < start->positions.cols(); ++j) lloyd.addSite(start->positions.col(j), exec);
-  else
-    lloyd.addSite(bodyCentroid(*embedding, weights), exec);
+    lloyd.pin(static_cast<std::size_t>(start->pinned));
+  }
   SHERD_ASSIGN(const Lloyd::End end, settle(degree, lloyd, *embedding, weights, params, limits, exec));
   if (exec.cancelled()) return cancelledError();
+  warnOfEmptyPins(lloyd, exec);
 
   // γ belongs to the sites that a search found by it: another number of them is one asked for.
   const bool degreeGiven = start == nullptr || start->degreeGiven || given != degree;

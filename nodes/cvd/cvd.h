@@ -51,14 +51,16 @@ struct CvdParams {
 };
 
 /// `start`: d × N sites of the same embedding, or null. With `degree` 0 or N they are where the iteration
-/// starts; with a higher degree, more are grown from them; with a lower one, or null, all are grown from one.
-/// (Growing from one to N gives what PredictDegree's search gives at N for the same seed.) More sites than
-/// there are distinct nodes are not grown; a warning says so. Sites given may coincide, and cells may be
-/// empty. γ is that of the sites given, unless `degree` asks for another number. Says N, E_D, γ and
-/// how it ended. The result's sites are its cells' centroids (within the tolerance)
-/// and its labels exactly the nearest of these sites, the lower index where two are equally near (`exact`).
-/// Errors: sizes or dimensions that don't match; coordinates, weights or sites that are not finite; neither
-/// sites nor degree. Cost per pass O(nodes · N · d) at worst, far less where few sites move.
+/// starts; with a higher degree, more are grown from them; with a lower one, or null, all are grown from one,
+/// or from those pinned. (Growing from one, or from those pinned, to N gives what PredictDegree's search
+/// gives at N for the same seed.) Pinned ones never move; a warning says which of them are nearest to no
+/// node. More sites than there are distinct nodes are not grown; a warning says so.
+/// Sites given may coincide, and cells may be empty. γ is that of the sites given, unless `degree` asks for
+/// another number. Says N, E_D, γ and how it ended. The result's sites are its cells' centroids (within the
+/// tolerance), where they aren't pinned, and its labels exactly the nearest of these sites, the lower index
+/// where two are equally near (`exact`). Errors: sizes or dimensions that don't match; coordinates, weights
+/// or sites that are not finite; neither sites nor degree; more pinned sites than the degree. Cost per pass
+/// O(nodes · N · d) at worst, far less where few sites move.
 Result<Partition> cvd(const std::shared_ptr<const Embedding>& embedding, const WeightField& weights,
                       const Sites* start, const CvdParams& params, const Exec& exec);
 
@@ -66,6 +68,9 @@ Result<Partition> cvd(const std::shared_ptr<const Embedding>& embedding, const W
 
 /// Are these of one body, and finite?
 Result<void> checkLloydInput(const Embedding& embedding, const WeightField& weights);
+
+/// Are these sites of this embedding, finite, and at least one? Errors are of the port named.
+Result<void> checkSites(const Embedding& embedding, const Sites& sites, const char* port);
 
 /// Σ V x̄ / Σ V, m; the mean of the nodes where all volumes are zero.
 Eigen::VectorXd bodyCentroid(const Embedding& embedding, const WeightField& weights);
@@ -92,12 +97,15 @@ class Lloyd {
 
   /// One site more; labels follow. `position`: d numbers, m.
   void addSite(const Eigen::Ref<const Eigen::VectorXd>& position, const Exec& exec);
-  /// Lloyd's iteration from the sites as they are, with exact labels.
+  /// From now on the first `count` sites stay where they are: no iteration moves them.
+  void pin(std::size_t count);
+  /// Lloyd's iteration from the sites as they are, with exact labels. The energy doesn't rise.
   Result<End> run(const LloydLimits& limits, const Exec& exec);
   /// The same with labels by flooding over the edges of the embedding's mesh. May end without converging.
   Result<End> runFlood(const LloydLimits& limits, const Exec& exec);
 
   std::size_t siteCount() const;
+  std::size_t pinnedCount() const;
   std::size_t nodeCount() const;
   Eigen::MatrixXd sites() const;                        ///< d × N, m
   const std::vector<Index>& labels() const;             ///< per node
@@ -113,6 +121,11 @@ enum class Growth {
   ByEnergy,  ///< only where a new site lowers E_D
   ByVolume,  ///< also where there is no energy: then ∝ V ‖x̄ − p̄‖², and at last ∝ ‖x̄ − p̄‖²
 };
+
+/// What growth begins with: the pinned ones of `pinned`, which stay where they are; where that is null or has
+/// none, one site at the body's centroid.
+Lloyd firstSites(const Embedding& embedding, const WeightField& weights, const Sites* pinned,
+                 const Exec& exec);
 
 /// Draws a node by `seed` and the number of sites so far. None where every node (that weighs) has a site of
 /// its own place, or where there are as many sites as nodes.

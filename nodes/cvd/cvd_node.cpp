@@ -8,7 +8,8 @@ NodeType cvdNode() {
                                 "Places the cells that the body breaks into: small where the energy is.")
       .input<WeightField>("weights", "what each node weighs, from Weights")
       .input<Embedding>("embedding", "the distances to measure with, from Embed")
-      .optionalInput<Sites>("sites", "sites to start from, from PredictDegree; left open: grown from one")
+      .optionalInput<Sites>("sites",
+                            "sites to start from, from PredictDegree or PinSites; left open: grown from one")
       .integer("degree", &CvdParams::degree,
                {.unit = "",
                 .min = 0,

@@ -52,6 +52,18 @@ Result<void> checkLloydInput(const Embedding& embedding, const WeightField& weig
   return checkAmounts(weights.volume, nodes, "volumes");
 }
 
+Result<void> checkSites(const Embedding& embedding, const Sites& sites, const char* port) {
+  if (sites.positions.cols() == 0) return failure("there are no sites", {}, port);
+  if (sites.positions.rows() != embedding.coordinates.rows())
+    return failure(fmt::format("the sites have {} dimensions, the embedding {}", sites.positions.rows(),
+                               embedding.coordinates.rows()),
+                   "sites have to come from a search, or be pinned, in this embedding", port);
+  if (!sites.positions.allFinite()) return failure("a site is not at a finite place", {}, port);
+  if (sites.pinned < 0 || sites.pinned > sites.positions.cols())
+    return failure(fmt::format("{} of {} sites are pinned", sites.pinned, sites.positions.cols()), {}, port);
+  return {};
+}
+
 Eigen::VectorXd bodyCentroid(const Embedding& embedding, const WeightField& weights) {
   const Eigen::Index nodes = embedding.coordinates.cols();
   double total = 0;
@@ -63,6 +75,18 @@ Eigen::VectorXd bodyCentroid(const Embedding& embedding, const WeightField& weig
     sum += share * embedding.coordinates.col(n);
   }
   return sum;
+}
+
+Lloyd firstSites(const Embedding& embedding, const WeightField& weights, const Sites* pinned,
+                 const Exec& exec) {
+  Lloyd lloyd(embedding, weights);
+  if (pinned == nullptr || pinned->pinned == 0) {
+    lloyd.addSite(bodyCentroid(embedding, weights), exec);
+    return lloyd;
+  }
+  for (Eigen::Index j = 0; j < pinned->pinned; ++j) lloyd.addSite(pinned->positions.col(j), exec);
+  lloyd.pin(static_cast<std::size_t>(pinned->pinned));
+  return lloyd;
 }
 
 std::optional<Index> drawSite(const Lloyd& lloyd, const Embedding& embedding, const WeightField& weights,

@@ -28,6 +28,7 @@ struct Lloyd::Impl {
   const WeightField& weights;
   std::size_t nodes, dimensions, size;  ///< size: padded dimensions
   std::size_t siteCount = 0;
+  std::size_t pinned = 0;  ///< the first so many sites don't move
 
   std::vector<double> x, p;  ///< padded coordinates of nodes and sites, one after another
   std::vector<Index> label;
@@ -295,13 +296,13 @@ bool Lloyd::Impl::centroid(const std::vector<Index>& members, std::vector<double
   return false;
 }
 
-/// Moves the sites of cells that changed. Returns the farthest move, m.
+/// Moves the sites of cells that changed, but not those pinned. Returns the farthest move, m.
 double Lloyd::Impl::moveToCentroids(const Exec& exec) {
   std::vector<double> step(siteCount, 0.0);
   parallelFor(exec, siteCount, blockOf(nodes * size / siteCount), [&](std::size_t begin, std::size_t end) {
     std::vector<double> target;
     for (std::size_t j = begin; j < end; ++j) {
-      if (!dirty[j] || members[j].empty() || !centroid(members[j], target)) continue;
+      if (j < pinned || !dirty[j] || members[j].empty() || !centroid(members[j], target)) continue;
       step[j] = std::sqrt(squaredDistance(target.data(), &p[j * size], size));
       if (!std::equal(target.begin(), target.end(), &p[j * size])) moved[j] = 1;
       std::copy(target.begin(), target.end(), &p[j * size]);
@@ -365,7 +366,9 @@ Result<Lloyd::End> Lloyd::runFlood(const LloydLimits& limits, const Exec& exec) 
   return impl_->iterate(limits, exec, [&] { return impl_->assignByFlooding(graph, exec); });
 }
 
+void Lloyd::pin(std::size_t count) { impl_->pinned = std::min(count, impl_->siteCount); }
 std::size_t Lloyd::siteCount() const { return impl_->siteCount; }
+std::size_t Lloyd::pinnedCount() const { return impl_->pinned; }
 std::size_t Lloyd::nodeCount() const { return impl_->nodes; }
 const std::vector<Index>& Lloyd::labels() const { return impl_->label; }
 const std::vector<double>& Lloyd::squaredDistances() const { return impl_->distance2; }

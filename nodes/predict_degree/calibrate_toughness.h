@@ -17,12 +17,12 @@ struct CalibrateToughnessParams {
   std::int64_t seed = 1;  ///< that of the PredictDegree that will use it: it then has exactly N for this hit
 };
 
-/// γ in J·m², > 0. With N = 1, which has no upper end, twice E_D(1): the body withstands a hit of nearly
-/// twice the energy. Where E_D(N) is 0 (every node that weighs has a site), half the upper end. Says the
-/// number. Errors: those of cvd (sizes, finiteness); N < 1; no energy at all; fewer than N nodes that weigh,
-/// and an N at which E_D doesn't fall, since no γ gives these: both with the nearest N that can be had. Cost:
-/// that of PredictDegree up to N.
-Result<double> calibrateToughness(const WeightField& weights, const Embedding& embedding,
+/// `pinned`: as for predictDegree, or null. γ in J·m², > 0. With N = 1, which has no upper end, twice E_D(1):
+/// the body withstands a hit of nearly twice the energy. Where E_D(N) is 0 (every node that weighs has a
+/// site), half the upper end. Says the number. Errors: those of cvd (sizes, finiteness); N < 1; no energy at
+/// all; fewer than N nodes that weigh, and an N at which E_D doesn't fall, since no γ gives these: both with
+/// the nearest N that can be had; `pinned` without pins; 1 < N < pins. Cost: that of PredictDegree up to N.
+Result<double> calibrateToughness(const WeightField& weights, const Embedding& embedding, const Sites* pinned,
                                   const CalibrateToughnessParams& params, const Exec& exec);
 
 }  // namespace sherd

@@ -24,9 +24,10 @@ NodeType calibrateToughnessNode() {
                         "with another seed into about as many"})
       .output<double>("gamma", "the threshold γ, to be wired to PredictDegree.gamma, J·m²")
       .run([](const Params& params, NodeIo& io) -> Result<void> {
+        const auto pinned = io.in<Sites>("pinned");
         SHERD_ASSIGN(const double gamma,
                      calibrateToughness(*io.in<WeightField>("weights"), *io.in<Embedding>("embedding"),
-                                        params, io.exec()));
+                                        pinned.get(), params, io.exec()));
         io.out("gamma", gamma);
         return {};
       });

@@ -18,6 +18,26 @@ Result<void> checkParams(const PredictDegreeParams& params) {
   return {};
 }
 
+Result<void> checkPinned(const Embedding& embedding, const Sites& pinned, const PredictDegreeParams& params) {
+  SHERD_CHECK(checkSites(embedding, pinned, "pinned"));
+  if (pinned.pinned == 0) return failure("none of these sites is pinned", "wire PinSites", "pinned");
+  const bool given = params.degree > 0;
+  const int most = given ? params.degree : params.maxDegree;
+  if (pinned.pinned > most)
+    return failure(fmt::format("{} sites are pinned, but only {} are {}", pinned.pinned, most,
+                               given ? "wanted" : "allowed"),
+                   "ask for at least as many as are pinned, or pin fewer", given ? "degree" : "max_degree");
+  return {};
+}
+
+/// What the search begins with: the pinned sites, unless the whole body is below γ.
+Lloyd startOf(const WeightField& weights, const Embedding& embedding, const Sites* pinned,
+              const PredictDegreeParams& params, const Exec& exec) {
+  Lloyd whole = firstSites(embedding, weights, nullptr, exec);
+  if (pinned == nullptr || (params.degree == 0 && whole.energy() < params.gamma)) return whole;
+  return firstSites(embedding, weights, pinned, exec);
+}
+
 /// The search's end, told as the user has to know it.
 void report(const PredictDegreeParams& params, std::size_t sites, double energy, bool exhausted,
             const Exec& exec) {
@@ -49,15 +69,15 @@ void report(const PredictDegreeParams& params, std::size_t sites, double energy,
 
 }  // namespace
 
-Result<Sites> predictDegree(const WeightField& weights, const Embedding& embedding,
+Result<Sites> predictDegree(const WeightField& weights, const Embedding& embedding, const Sites* pinned,
                             const PredictDegreeParams& params, const Exec& exec) {
   SHERD_CHECK(checkLloydInput(embedding, weights));
   SHERD_CHECK(checkParams(params));
+  if (pinned != nullptr) SHERD_CHECK(checkPinned(embedding, *pinned, params));
 
   const bool given = params.degree > 0;
   const auto most = static_cast<std::size_t>(given ? params.degree : params.maxDegree);
-  Lloyd lloyd(embedding, weights);
-  lloyd.addSite(bodyCentroid(embedding, weights), exec);
+  Lloyd lloyd = startOf(weights, embedding, pinned, params, exec);
   if (exec.cancelled()) return cancelledError();
 
   double energy = lloyd.energy();
@@ -75,7 +95,8 @@ Result<Sites> predictDegree(const WeightField& weights, const Embedding& embeddi
     energy = lloyd.energy();
   }
   report(params, lloyd.siteCount(), energy, exhausted, exec);
-  return Sites{lloyd.sites(), energy, given ? 0.0 : params.gamma, given};
+  return Sites{lloyd.sites(), energy, given ? 0.0 : params.gamma, given,
+               static_cast<std::int64_t>(lloyd.pinnedCount())};
 }
 
 }  // namespace sherd

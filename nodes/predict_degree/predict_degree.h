@@ -23,11 +23,21 @@ struct PredictDegreeParams {
   int maxDegree = 1000;  ///< ≥ 1, of the search by γ
 };
 
+/// `pinned`: sites of the same embedding that are pinned by hand, or null. They count among the N, are the
+/// first of the result, and stay where they are; the search goes on from them. A hit that leaves the whole
+/// body below γ breaks nothing all the same: then there is one site, and it isn't pinned.
+///
 /// Sites p̄_j (m, in the embedding), E_D and γ, or 0 and `degreeGiven`. γ = 0 itself asks for every site there
 /// can be. Says the outcome; warns where `maxDegree`, or the number of distinct nodes (that weigh), ends the
-/// search before γ is reached. Errors: those of cvd (sizes, finiteness), parameters out of range. Cost: about
-/// five runs of Lloyd's iteration at N.
-Result<Sites> predictDegree(const WeightField& weights, const Embedding& embedding,
+/// search before γ is reached. Errors: those of cvd (sizes, finiteness), parameters out of range; `pinned`
+/// without pins, or with more than `degree` or `maxDegree`. Cost: about five runs of Lloyd's
+/// iteration at N.
+Result<Sites> predictDegree(const WeightField& weights, const Embedding& embedding, const Sites* pinned,
                             const PredictDegreeParams& params, const Exec& exec);
+
+inline Result<Sites> predictDegree(const WeightField& weights, const Embedding& embedding,
+                                   const PredictDegreeParams& params, const Exec& exec) {
+  return predictDegree(weights, embedding, nullptr, params, exec);
+}
 
 }  // namespace sherd

@@ -8,6 +8,8 @@ NodeType predictDegreeNode() {
              "PredictDegree", 1, "Decides from the energy into how many pieces the body breaks, and where.")
       .input<WeightField>("weights", "what each node weighs, from Weights")
       .input<Embedding>("embedding", "the distances to measure with, from Embed")
+      .optionalInput<Sites>("pinned",
+                            "sites that stay where they are, from PinSites; they count among the pieces")
       .number(
           "gamma", &PredictDegreeParams::gamma,
           {.unit = "J·m²",
@@ -27,8 +29,10 @@ NodeType predictDegreeNode() {
       .output<double>("energy", "E_D of these sites, J·m²")
       .implementation(2)
       .run([](const PredictDegreeParams& params, NodeIo& io) -> Result<void> {
-        SHERD_ASSIGN(Sites sites, predictDegree(*io.in<WeightField>("weights"),
-                                                *io.in<Embedding>("embedding"), params, io.exec()));
+        const auto pinned = io.in<Sites>("pinned");
+        SHERD_ASSIGN(Sites sites,
+                     predictDegree(*io.in<WeightField>("weights"), *io.in<Embedding>("embedding"),
+                                   pinned.get(), params, io.exec()));
         io.out("degree", static_cast<std::int64_t>(sites.positions.cols()));
         io.out("energy", sites.energy);
         io.out("sites", std::move(sites));

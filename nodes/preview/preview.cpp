@@ -7,7 +7,9 @@
 
 #include "geometry/crack_attributes.h"
 #include "pictures/label.h"
+#include "preview/cage_soups.h"
 #include "preview/camera.h"
+#include "preview/field_soup.h"
 #include "preview/scene.h"
 #include "preview/shading.h"
 #include "preview/soups.h"
@@ -18,12 +20,23 @@ namespace {
 const Colour kInk(0.05f, 0.055f, 0.065f);
 const Colour kClay(0.62f, 0.60f, 0.57f);
 
-Result<void> checkInput(const Fragments& f, const EnergyField* energy, const PreviewParams& params) {
-  if (!f.tets || !f.tets->surface || f.tets->surface->triangles.empty() || f.pieces.empty())
+Result<void> checkInput(const PreviewInput& in) {
+  const Fragments* f = in.pieces;
+  if (f == nullptr || !f->tets || !f->tets->surface || f->tets->surface->triangles.empty() ||
+      f->pieces.empty())
     return failure("there are no pieces to show", "wire Tessellate's `pieces`", "pieces");
+  const EnergyField* energy = in.energy;
   if (energy != nullptr &&
       (!energy->tets || !energy->tets->surface || energy->nodeEnergy.size() != energy->tets->nodes.size()))
     return failure("the energy has no values on its tetrahedra", "wire Simulate's `energy`", "energy");
+  const Partition* cells = in.cells;
+  if (cells != nullptr && (!cells->embedding || !cells->embedding->tets ||
+                           cells->label.size() != cells->embedding->tets->nodes.size()))
+    return failure("the cells have no labels on their tetrahedra", "wire CVD's `cells`", "cells");
+  return {};
+}
+
+Result<void> checkParams(const PreviewInput& in, const PreviewParams& params) {
   const auto inRange = [](auto value, auto low, auto high) { return value >= low && value <= high; };
   if (!inRange(params.width, 64, 16384))
     return failure("the width is out of range", "64 to 16384 pixels", "width");
@@ -31,47 +44,103 @@ Result<void> checkInput(const Fragments& f, const EnergyField* energy, const Pre
     return failure("the height is out of range", "64 to 16384 pixels", "height");
   if (!inRange(params.samples, 1, 1024)) return failure("samples are out of range", "1 to 1024", "samples");
   if (!inRange(params.explode, 0.0, 4.0)) return failure("explode is out of range", "0 to 4", "explode");
+  if (!inRange(params.sliceAt, 0.0, 1.0)) return failure("slice_at is out of range", "0 to 1", "slice_at");
+  if (params.slice != Slice::None && in.energy == nullptr && in.cells == nullptr)
+    return failure("there is nothing to show in a slice", "wire `cells`, `energy` or both", "slice");
   return {};
 }
 
-/// A scene, and what is written above it.
+/// What the ends of a panel's colours stand for.
+struct Ends {
+  std::string low, high;
+};
+
+/// A scene, and what is written above and below it.
 struct Panel {
   Scene scene;
   std::string title;
-  std::optional<EnergyScale> scale;
+  std::optional<Ends> ends;
 };
 
 std::string countOf(std::size_t pieces) {
   return pieces == 1 ? std::string("1 piece") : fmt::format("{} pieces", pieces);
 }
 
-Result<std::vector<Panel>> makePanels(const Fragments& f, const EnergyField* energy,
-                                      const PreviewParams& params, const Exec& exec) {
-  const TriMesh& body = *f.tets->surface;
-  const PictureSpace space = PictureSpace::of(body);
-  const std::vector<Vec3> normals = shadingNormals(body);
-  std::vector<Panel> panels;
-  if (params.before) {
-    SHERD_ASSIGN(Scene before, Scene::make(wholeSoup(body, normals, space, kClay), exec));
-    panels.push_back({std::move(before), "before", {}});
+/// Panels of what a body consists of, one after another.
+class PanelMaker {
+ public:
+  PanelMaker(const PreviewInput& in, const PreviewParams& params, const Exec& exec)
+      : in_(in),
+        params_(params),
+        exec_(exec),
+        body_(*in.pieces->tets->surface),
+        space_(PictureSpace::of(body_)),
+        normals_(shadingNormals(body_)) {
+    if (params.slice == Slice::None) return;
+    const int axis = static_cast<int>(params.slice) - static_cast<int>(Slice::X);
+    const Box box = boxOf(body_.positions);
+    cut_ = CutPlane{axis, box.low[axis] + params.sliceAt * (box.high[axis] - box.low[axis])};
   }
-  SHERD_ASSIGN(const std::vector<std::vector<Vec3>> cracks, crackNormals(f, exec));
-  SHERD_ASSIGN(Scene pieces, Scene::make(piecesSoup(f, normals, cracks, space, params.explode), exec));
-  panels.push_back({std::move(pieces), countOf(f.pieces.size()), {}});
-  if (energy == nullptr) return panels;
-  const TriMesh& shown = *energy->tets->surface;
-  const std::vector<double> densities = surfaceEnergyDensity(*energy);
-  const EnergyScale scale = energyScale(densities);
-  Soup soup = wholeSoup(shown, &shown == &body ? normals : shadingNormals(shown), space, kClay);
-  for (const Triangle& t : shown.triangles)
-    for (const Index v : t) soup.values.push_back(scale.place(densities[at(v)]));
-  SHERD_ASSIGN(Scene strained, Scene::make(std::move(soup), exec));
-  panels.push_back(
-      {std::move(strained), scale.high > 0 ? "strain energy, J/m^3" : "no strain energy", scale});
-  return panels;
-}
 
-/// The bar that shows what the energy's colours stand for, and its two ends in words below it.
+  Result<std::vector<Panel>> make() {
+    if (params_.before) SHERD_CHECK(add(wholeSoup(body_, normals_, space_, kClay), "before"));
+    SHERD_ASSIGN(const std::vector<std::vector<Vec3>> cracks, crackNormals(*in_.pieces, exec_));
+    SHERD_CHECK(add(piecesSoup(*in_.pieces, normals_, cracks, space_, params_.explode),
+                    countOf(in_.pieces->pieces.size())));
+    if (in_.energy != nullptr) SHERD_CHECK(addEnergy());
+    if (in_.beta != nullptr) SHERD_CHECK(addBeta());
+    if (in_.cells != nullptr) {
+      const std::size_t count = in_.cells->siteCount();
+      SHERD_CHECK(add(cellsSoup(*in_.cells, cut_, space_),
+                      fmt::format("{} cell{}{}", count, count == 1 ? "" : "s", cut_ ? ", cut open" : "")));
+    }
+    return std::move(panels_);
+  }
+
+ private:
+  Result<void> add(Soup soup, std::string title, std::optional<Ends> ends = {}) {
+    SHERD_ASSIGN(Scene scene, Scene::make(std::move(soup), exec_));
+    panels_.push_back({std::move(scene), std::move(title), std::move(ends)});
+    return {};
+  }
+
+  Result<void> addEnergy() {
+    const EnergyField& energy = *in_.energy;
+    const TriMesh& shown = *energy.tets->surface;
+    const std::vector<double> densities = surfaceEnergyDensity(energy);
+    const EnergyScale scale = energyScale(densities);
+    Soup soup = wholeSoup(shown, &shown == &body_ ? normals_ : shadingNormals(shown), space_, kClay);
+    for (const Triangle& t : shown.triangles)
+      for (const Index v : t) soup.values.push_back(scale.place(densities[at(v)]));
+    SHERD_CHECK(addEnergy(std::move(soup), scale, "strain energy, J/m^3"));
+    if (!cut_) return {};
+    return addEnergy(energySoup(energy, scale, cut_, space_), scale, "strain energy inside, J/m^3");
+  }
+  Result<void> addEnergy(Soup soup, const EnergyScale& scale, const char* title) {
+    if (!(scale.high > 0)) return add(std::move(soup), "no strain energy");
+    return add(std::move(soup), title,
+               Ends{fmt::format("{:.1e}", scale.low), fmt::format("{:.1e}", scale.high)});
+  }
+
+  Result<void> addBeta() {
+    SHERD_ASSIGN(FieldSoup field, fieldSoup(body_, normals_, *in_.beta, space_));
+    if (field.scale.isOne())
+      return add(std::move(field.soup), fmt::format("fragility {:.3g} everywhere", field.scale.low));
+    return add(std::move(field.soup), "fragility",
+               Ends{fmt::format("{:.3g}", field.scale.low), fmt::format("{:.3g}", field.scale.high)});
+  }
+
+  const PreviewInput& in_;
+  const PreviewParams& params_;
+  const Exec& exec_;
+  const TriMesh& body_;
+  PictureSpace space_;
+  std::vector<Vec3> normals_;
+  std::optional<CutPlane> cut_;
+  std::vector<Panel> panels_;
+};
+
+/// The bar that shows what the colours stand for, and its two ends in words below it.
 struct Legend {
   int left = 0, top = 0, width = 0, height = 0, dots = 1;
 
@@ -80,15 +149,14 @@ struct Legend {
     return {frame.left + (frame.width - width) / 2, frame.top + frame.height - 18 * dots - height, width,
             height, dots};
   }
-  void draw(Picture& picture, const EnergyScale& scale) const {
+  void draw(Picture& picture, const Ends& ends) const {
     for (int x = 0; x < width; ++x) {
       const Rgb colour = toRgb(energyColour(static_cast<float>(x) / static_cast<float>(width - 1)));
       for (int y = 0; y < height; ++y) paint(picture, left + x, top + y, colour);
     }
-    const std::string low = fmt::format("{:.1e}", scale.low), high = fmt::format("{:.1e}", scale.high);
     const int below = top + height + 2 * dots;
-    drawText(picture, left, below, low, dots, toRgb(kInk));
-    drawText(picture, left + width - textWidth(high, dots), below, high, dots, toRgb(kInk));
+    drawText(picture, left, below, ends.low, dots, toRgb(kInk));
+    drawText(picture, left + width - textWidth(ends.high, dots), below, ends.high, dots, toRgb(kInk));
   }
 };
 
@@ -96,8 +164,7 @@ void annotate(Picture& picture, const PanelFrame& frame, const Panel& panel) {
   const int dots = std::max(1, std::min(frame.width / 220, frame.height / 200));
   const int x = frame.left + (frame.width - textWidth(panel.title, dots)) / 2;
   drawText(picture, x, frame.top + 6 * dots, panel.title, dots, toRgb(kInk));
-  if (panel.scale && panel.scale->high > 0 && frame.height > 60 * dots)
-    Legend::in(frame, dots).draw(picture, *panel.scale);
+  if (panel.ends && frame.height > 60 * dots) Legend::in(frame, dots).draw(picture, *panel.ends);
 }
 
 Picture toPicture(const Canvas& canvas) {
@@ -110,10 +177,10 @@ Picture toPicture(const Canvas& canvas) {
 
 }  // namespace
 
-Result<Picture> renderPreview(const Fragments& f, const EnergyField* energy, const PreviewParams& params,
-                              const Exec& exec) {
-  SHERD_CHECK(checkInput(f, energy, params));
-  SHERD_ASSIGN(const std::vector<Panel> panels, makePanels(f, energy, params, exec));
+Result<Picture> renderPreview(const PreviewInput& in, const PreviewParams& params, const Exec& exec) {
+  SHERD_CHECK(checkInput(in));
+  SHERD_CHECK(checkParams(in, params));
+  SHERD_ASSIGN(const std::vector<Panel> panels, PanelMaker(in, params, exec).make());
   const int count = static_cast<int>(panels.size());
   // One camera for all, so that sizes can be compared; the pieces moved apart need the most room.
   std::vector<Vec3f> points;

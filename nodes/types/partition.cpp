@@ -42,7 +42,7 @@ void hashValue(Hasher& hasher, const Sites& sites) {
   hashBits(hasher, sites.positions);
   hashBits(hasher, sites.energy);
   hashBits(hasher, sites.gamma);
-  hasher.add(sites.degreeGiven);
+  hasher.add(sites.degreeGiven).add(sites.pinned);
 }
 
 void hashValue(Hasher& hasher, const Partition& partition) {
@@ -84,6 +84,7 @@ void saveValue(ArchiveWriter& to, const Sites& sites) {
   to.put(sites.energy);
   to.put(sites.gamma);
   to.put(sites.degreeGiven);
+  to.put(sites.pinned);
 }
 
 std::optional<Sites> loadValue(ArchiveReader& from, std::type_identity<Sites>) {
@@ -92,7 +93,8 @@ std::optional<Sites> loadValue(ArchiveReader& from, std::type_identity<Sites>) {
   from.get(sites->energy);
   from.get(sites->gamma);
   from.get(sites->degreeGiven);
-  if (!from.ok()) sites.reset();
+  from.get(sites->pinned);
+  if (!from.ok() || sites->pinned < 0 || sites->pinned > sites->positions.cols()) sites.reset();
   return sites;
 }
 

@@ -28,11 +28,12 @@ struct Embedding {
 /// Sites p̄_j and what the search for them found.
 struct Sites {
   static constexpr const char* typeName = "Sites";
-  static constexpr int archiveVersion = 1;
+  static constexpr int archiveVersion = 2;
   Eigen::MatrixXd positions;  ///< d × N, m, in the embedding; N ≥ 1
-  double energy = 0;          ///< J·m², E_D of these sites
-  double gamma = 0;           ///< J·m², the threshold asked for; says nothing where the degree was given
-  bool degreeGiven = false;   ///< N was asked for, not found by γ
+  double energy = 0;  ///< J·m², E_D of these sites; 0 of pinned ones that no energy was asked for yet
+  double gamma = 0;   ///< J·m², the threshold asked for; says nothing where the degree was given
+  bool degreeGiven = false;  ///< N was asked for, not found by γ
+  std::int64_t pinned = 0;   ///< the first so many were put where they are by hand, and stay there; in [0, N]
 };
 
 /// Every node's nearest site.

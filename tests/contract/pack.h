@@ -89,9 +89,9 @@ inline ContractExceptions packExceptions() {
       "CVD.seed", "CalibrateToughness.seed", "PaintBeta.seed", "PredictDegree.seed", "WarpRest.seed",
       // shares and ratios of equal quantities
       "ConvexProxies.tolerance", "CVD.tolerance", "Embed.tolerance", "Embed.time", "Preview.explode",
-      "Repair.crack", "Repair.leaf", "Repair.small_hole", "Simulate.ball_target", "Simulate.friction",
-      "Simulate.obstacle_poisson", "SelectPiece.poisson", "Simulate.poisson", "Simulate.restitution",
-      "Tessellate.min_volume", "WarpRest.elongation",
+      "Preview.slice_at", "Repair.crack", "Repair.leaf", "Repair.small_hole", "SelectPiece.poisson",
+      "Simulate.ball_target", "Simulate.friction", "Simulate.obstacle_poisson", "Simulate.poisson",
+      "Simulate.restitution", "Tessellate.min_volume", "WarpRest.elongation",
       // values of whatever is painted
       "PaintBeta.background", "PaintBeta.high", "PaintBeta.low", "PaintBeta.threshold", "Protect.threshold",
       // an exponent

@@ -119,7 +119,7 @@ TEST(Granularity, SizesFollowTheEnergyByAlpha) {
 TEST(Granularity, TenAndAHundredTimesTheToughnessGiveFallingCounts) {
   const HitWall wall;
   const WeightField w = wall.weighted(1);
-  const auto gamma = calibrateToughness(w, *wall.embedding, {.pieces = 100}, Exec{});
+  const auto gamma = calibrateToughness(w, *wall.embedding, nullptr, {.pieces = 100}, Exec{});
   ASSERT_TRUE(gamma.ok());
   const std::size_t fragile = wall.sitesBelow(w, *gamma), tough = wall.sitesBelow(w, 10 * *gamma),
                     toughest = wall.sitesBelow(w, 100 * *gamma);

@@ -17,7 +17,8 @@ using reference::Cloud;
 using reference::cloud;
 
 double calibrate(const Cloud& c, int pieces, std::int64_t seed = 1, const Exec& exec = {}) {
-  const auto gamma = calibrateToughness(c.weights, *c.embedding, {.pieces = pieces, .seed = seed}, exec);
+  const auto gamma =
+      calibrateToughness(c.weights, *c.embedding, nullptr, {.pieces = pieces, .seed = seed}, exec);
   EXPECT_TRUE(gamma.ok()) << (gamma.ok() ? "" : gamma.error().text());
   return gamma.ok() ? *gamma : NAN;
 }
@@ -29,7 +30,7 @@ int sitesOf(const Cloud& c, double gamma, std::int64_t seed = 1) {
 }
 
 Error refusal(const Cloud& c, const CalibrateToughnessParams& params, const Exec& exec = {}) {
-  const auto gamma = calibrateToughness(c.weights, *c.embedding, params, exec);
+  const auto gamma = calibrateToughness(c.weights, *c.embedding, nullptr, params, exec);
   EXPECT_FALSE(gamma.ok());
   return gamma.ok() ? Error{} : gamma.error();
 }

@@ -230,7 +230,11 @@ TEST(ArchiveChecks, EmbeddingSitesAndPartition) {
   EXPECT_FALSE(accepted<Embedding>([](Embedding& e) { e.coordinates.resize(5, 3); }));
   EXPECT_FALSE(accepted<Embedding>([](Embedding& e) { e.coordinates.resize(0, e.coordinates.cols()); }));
   EXPECT_FALSE(accepted<Embedding>([](Embedding& e) { e.tets = nullptr; }));
-  EXPECT_TRUE(accepted<Sites>([](Sites& s) { s.positions.resize(5, 0); }));
+  EXPECT_TRUE(accepted<Sites>([](Sites& s) { s.positions.resize(5, s.pinned = 0); }));
+  EXPECT_FALSE(accepted<Sites>([](Sites& s) { s.positions.resize(5, 1); }));
+  EXPECT_TRUE(accepted<Sites>([](Sites& s) { s.pinned = 3; }));
+  EXPECT_FALSE(accepted<Sites>([](Sites& s) { s.pinned = 4; }));
+  EXPECT_FALSE(accepted<Sites>([](Sites& s) { s.pinned = -1; }));
   EXPECT_FALSE(accepted<Sites>([](Sites& s) { s.positions.resize(0, 5); }));
   EXPECT_FALSE(accepted<Partition>([](Partition& p) { p.label.pop_back(); }));
   EXPECT_FALSE(accepted<Partition>([](Partition& p) { p.label[0] = 3; }));

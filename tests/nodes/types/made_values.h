@@ -109,6 +109,7 @@ inline Sites sites() {
   s.energy = 0.5;
   s.gamma = kNan;
   s.degreeGiven = true;
+  s.pinned = 2;
   return s;
 }
 

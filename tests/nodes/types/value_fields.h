@@ -90,8 +90,8 @@ auto of(Maybe<RestShape> auto& v) {
   return std::tie(a, b);
 }
 auto of(Maybe<Sites> auto& v) {
-  auto& [a, b, c, d] = v;
-  return std::tie(a, b, c, d);
+  auto& [a, b, c, d, e] = v;
+  return std::tie(a, b, c, d, e);
 }
 auto of(Maybe<Partition> auto& v) {
   auto& [a, b, c, d, e, f, g, h, i] = v;
