@@ -1,5 +1,6 @@
 #include "embed/filter.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr std::size_t kLandmarks = 64;
 constexpr std::size_t kPartners = 2000;
+constexpr double kLeastEigenvalue = 1e-4;  ///< of the largest: of what is left, much is noise
 
 struct Landmark {
   std::size_t node;
@@ -48,6 +50,25 @@ double zigzag(const BodyPart& part, const std::vector<Landmark>& marks, double l
   return *middle;
 }
 
+/// Spread over the body as it is, whatever lengths count there; lengths without their zigzag.
+Result<std::vector<Landmark>> measured(const BodyPart& part, const Exec& exec) {
+  const PathGraph graph(part.positions, part.tets, part.neighbours);
+  if (exec.cancelled()) return cancelledError();
+  std::vector<Landmark> marks = landmarks(graph, part.positions.size(), exec);
+  if (exec.cancelled()) return cancelledError();
+  const double longer = zigzag(part, marks, graph.meanLink());
+  if (!part.stretch.empty()) {
+    const PathGraph stretched(part.positions, part.tets, part.neighbours, part.stretch);
+    for (Landmark& mark : marks) {
+      if (exec.cancelled()) return cancelledError();
+      mark.length = stretched.lengthsFrom(static_cast<Index>(mark.node));
+    }
+  }
+  for (Landmark& mark : marks)
+    for (double& length : mark.length) length /= longer;
+  return marks;
+}
+
 /// The least-squares problem's normal equations: A g ≈ b, g_k = f_k².
 struct NormalEquations {
   Eigen::MatrixXd matrix;
@@ -59,15 +80,15 @@ struct NormalEquations {
   }
 };
 
-NormalEquations equationsOf(const BodyPart& part, const Landmark& mark, double stretch,
+NormalEquations equationsOf(std::span<const Vec3> places, const Landmark& mark,
                             const Eigen::MatrixXd& functions) {
-  const std::size_t nodes = part.positions.size(), stride = (nodes + kPartners - 1) / kPartners;
+  const std::size_t nodes = places.size(), stride = (nodes + kPartners - 1) / kPartners;
   Eigen::MatrixXd rows(functions.cols() + 1, static_cast<Eigen::Index>((nodes + stride - 1) / stride));
   Eigen::VectorXd target(rows.cols());
   Eigen::Index used = 0;
   for (std::size_t n = 0; n < nodes; n += stride) {
-    const double straight = (part.positions[n] - part.positions[mark.node]).norm();
-    const double distance = mark.length[n] / stretch;
+    const double straight = (places[n] - places[mark.node]).norm();
+    const double distance = mark.length[n];
     if (!(distance > 0) || !std::isfinite(distance)) continue;
     const auto i = static_cast<Eigen::Index>(n), m = static_cast<Eigen::Index>(mark.node);
     // Errors of squared distances over distances are errors of distances, up to a factor.
@@ -110,16 +131,39 @@ Eigen::VectorXd diffusionFilter(const Eigen::VectorXd& eigenvalues, double time)
   return (-(time / eigenvalues[0]) * eigenvalues.array()).exp();
 }
 
+Result<Eigen::MatrixXd> pathCoordinates(const BodyPart& part, int most, const Exec& exec) {
+  SHERD_ASSIGN(const std::vector<Landmark> marks, measured(part, exec));
+  const auto count = static_cast<Eigen::Index>(marks.size());
+  Eigen::MatrixXd squared(count, static_cast<Eigen::Index>(part.positions.size()));
+  for (Eigen::Index m = 0; m < count; ++m)
+    for (Eigen::Index n = 0; n < squared.cols(); ++n)
+      squared(m, n) = std::pow(marks[static_cast<std::size_t>(m)].length[static_cast<std::size_t>(n)], 2);
+  Eigen::MatrixXd between(count, count);
+  for (Eigen::Index m = 0; m < count; ++m)
+    between.col(m) = squared.col(static_cast<Eigen::Index>(marks[static_cast<std::size_t>(m)].node));
+  const Eigen::VectorXd mean = between.rowwise().mean();
+  const Eigen::MatrixXd centring = Eigen::MatrixXd::Identity(count, count) -
+                                   Eigen::MatrixXd::Constant(count, count, 1.0 / static_cast<double>(count));
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(-0.5 * centring * between * centring);
+  if (spectrum.info() != Eigen::Success)
+    return failure("the lengths of paths have no coordinates", "use filter: diffusion", "stretch");
+  if (exec.cancelled()) return cancelledError();
+  Eigen::Index kept = 0;  // the largest come last
+  while (kept < std::min<Eigen::Index>(most, count) &&
+         spectrum.eigenvalues()[count - 1 - kept] > kLeastEigenvalue * spectrum.eigenvalues()[count - 1])
+    ++kept;
+  const auto values = spectrum.eigenvalues().tail(kept);
+  const auto vectors = spectrum.eigenvectors().rightCols(kept);
+  return Eigen::MatrixXd(-0.5 * (squared.colwise() - mean).transpose() * vectors *
+                         values.cwiseSqrt().cwiseInverse().asDiagonal());
+}
+
 Result<FittedFilter> fittedFilter(const BodyPart& part, const Eigen::MatrixXd& functions, const Exec& exec) {
-  const PathGraph graph(part.positions, part.tets, part.neighbours);
-  if (exec.cancelled()) return cancelledError();
-  const std::vector<Landmark> marks = landmarks(graph, part.positions.size(), exec);
-  if (exec.cancelled()) return cancelledError();
-  const double stretch = zigzag(part, marks, graph.meanLink());
+  SHERD_ASSIGN(const std::vector<Landmark> marks, measured(part, exec));
   const Eigen::Index unknowns = functions.cols() + 1;
   const NormalEquations zero{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns)};
   const NormalEquations sum = parallelSum(exec, marks.size(), 1, zero, [&](std::size_t begin, std::size_t) {
-    return equationsOf(part, marks[begin], stretch, functions);
+    return equationsOf(part.positions, marks[begin], functions);
   });
   if (exec.cancelled()) return cancelledError();
   const Eigen::VectorXd factors = nonNegativeSolution(sum).cwiseSqrt();
