@@ -21,6 +21,7 @@ namespace sherd {
 namespace {
 
 constexpr double kConvex = 1e-6;  ///< of the hull's volume
+constexpr double kLeastStretch = 1e-3;
 
 Result<void> checkParams(const EmbedParams& params) {
   if (params.dimensions < 1) return failure("no dimension is allowed", "allow at least one", "dimensions");
@@ -89,7 +90,7 @@ Result<Eigen::MatrixXd> extended(const BodyPart& part, const Eigen::MatrixXd& on
     given[at(part.borderNode[v])] = 1;
   }
   if (extension == EmbedParams::Extension::Harmonic) {
-    SHERD_CHECK(extendHarmonically(part.positions, part.tets, given, values));
+    SHERD_CHECK(extendHarmonically(part.positions, part.tets, given, values, part.stretch));
     return values;
   }
   parallelFor(exec, part.node.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -111,14 +112,21 @@ Result<std::optional<Modes>> surfaceModes(const TetMesh& tets, const BodyPart& p
                                           const EmbedParams& params, const Exec& exec) {
   if (params.source == EmbedParams::Source::Fine) return fineModes(tets, part, params, exec);
   if (part.shells != 1) return std::optional<Modes>();
-  SHERD_ASSIGN(Modes modes, lowestModes(surfaceLaplacian(part.borderPositions, part.borderTriangles),
-                                        params.dimensions, exec));
+  SHERD_ASSIGN(Modes modes,
+               lowestModes(surfaceLaplacian(part.borderPositions, part.borderTriangles, part.borderStretch),
+                           params.dimensions, exec));
   SHERD_ASSIGN(modes.functions, extended(part, modes.functions, params.extension, exec));
   return std::optional(std::move(modes));
 }
 
+/// Where lengths are stretched, paths' coordinates stand for the modes, but under diffusion: low modes don't
+/// show how far it is across a narrow band.
 Result<Modes> modesOf(const TetMesh& tets, const BodyPart& part, const EmbedParams& params,
                       const Exec& exec) {
+  if (params.filter != EmbedParams::Filter::Diffusion && !part.stretch.empty()) {
+    SHERD_ASSIGN(const Eigen::MatrixXd coordinates, pathCoordinates(part, params.dimensions, exec));
+    return Modes{{}, coordinates.transpose()};
+  }
   if (params.source != EmbedParams::Source::Solid) {
     SHERD_ASSIGN(std::optional<Modes> modes, surfaceModes(tets, part, params, exec));
     if (modes) return std::move(*modes);
@@ -126,7 +134,7 @@ Result<Modes> modesOf(const TetMesh& tets, const BodyPart& part, const EmbedPara
         "a part of the body has a surface that does not hang together, as around a void: modes of the solid "
         "are taken for it");
   }
-  return lowestModes(solidLaplacian(part.positions, part.tets), params.dimensions, exec);
+  return lowestModes(solidLaplacian(part.positions, part.tets, part.stretch), params.dimensions, exec);
 }
 
 /// The factor that brings embedded edges closest to true ones: argmin Σ (s |x̄_i − x̄_j| − |x_i − x_j|)².
@@ -134,7 +142,7 @@ double edgeScale(const BodyPart& part, const Eigen::MatrixXd& x) {
   double product = 0, square = 0;
   for (const auto& [i, j] : tetEdges(part.tets)) {
     const double embedded = (x.col(i) - x.col(j)).norm();
-    product += embedded * (part.positions[at(i)] - part.positions[at(j)]).norm();
+    product += embedded * part.lengthBetween(at(i), at(j));
     square += embedded * embedded;
   }
   return square > 0 ? product / square : 1;
@@ -188,7 +196,7 @@ Result<Eigen::MatrixXd> embedPart(const TetMesh& tets, const BodyPart& part, con
 
 /// Parts on shared axes, apart along one more.
 Eigen::MatrixXd joined(const std::vector<BodyPart>& parts, const std::vector<Eigen::MatrixXd>& x,
-                       const std::vector<Vec3>& places) {
+                       std::span<const Vec3> places) {
   Eigen::Index dimensions = 0;
   double apart = boxOf(places).diagonal();
   for (const Eigen::MatrixXd& part : x) {
@@ -208,19 +216,21 @@ Eigen::MatrixXd joined(const std::vector<BodyPart>& parts, const std::vector<Eig
 }
 
 /// Root mean square of embedded over true edge length, less 1.
-double edgeError(const TetMesh& tets, const std::vector<Vec3>& places, const Eigen::MatrixXd& x) {
+double edgeError(const TetMesh& tets, const MetricNodes& metric, const Eigen::MatrixXd& x) {
   double sum = 0;
   const std::vector<Edge> edges = tetEdges(tets.tets);
   for (const auto& [i, j] : edges) {
-    const double error = (x.col(i) - x.col(j)).norm() / (places[at(i)] - places[at(j)]).norm() - 1;
+    double length = (metric.places[at(i)] - metric.places[at(j)]).norm();
+    if (!metric.stretch.empty()) length *= 0.5 * (metric.stretch[at(i)] + metric.stretch[at(j)]);
+    const double error = (x.col(i) - x.col(j)).norm() / length - 1;
     sum += error * error;
   }
   return std::sqrt(sum / static_cast<double>(edges.size()));
 }
 
 /// Their elements count as their mirror images, so that the modes stay those of positive lengths and volumes.
-void warnOfInsideOut(const TetMesh& tets, const std::vector<Vec3>& places, const Exec& exec) {
-  if (&places == &tets.nodes) return;
+void warnOfInsideOut(const TetMesh& tets, std::span<const Vec3> places, const Exec& exec) {
+  if (places.data() == tets.nodes.data()) return;
   std::size_t count = 0;
   for (const Tetra& t : tets.tets) {
     const Vec3& a = places[at(t[0])];
@@ -233,20 +243,41 @@ void warnOfInsideOut(const TetMesh& tets, const std::vector<Vec3>& places, const
                     count, tets.tets.size()));
 }
 
-Result<Embedding> interior(const std::shared_ptr<const TetMesh>& tets, const std::vector<Vec3>& places,
+/// The stretch at every node; empty where it is 1 all over.
+Result<std::vector<double>> stretchAt(const TetMesh& tets, const ScalarGrid* field, const Exec& exec) {
+  std::vector<double> stretch;
+  if (field == nullptr) return stretch;
+  stretch.resize(tets.nodes.size());
+  field->sample(tets.nodes, stretch);
+  bool isOne = true;
+  for (std::size_t n = 0; n < stretch.size(); ++n) {
+    const Vec3& p = tets.nodes[n];
+    if (!(stretch[n] >= kLeastStretch && stretch[n] <= 1 / kLeastStretch))
+      return failure(
+          fmt::format("the stretch is {} at ({:.6g}, {:.6g}, {:.6g}) m", stretch[n], p.x(), p.y(), p.z()),
+          "paint it with values from 0.001 to 1000 (1: as it is, more: cracks are drawn there)", "stretch");
+    isOne = isOne && stretch[n] == 1;
+  }
+  if (!isOne) return stretch;
+  if (!field->isConstant())
+    exec.warn("the stretch is 1 all over the body: its strokes miss it, or are thinner than the tetrahedra");
+  return std::vector<double>{};
+}
+
+Result<Embedding> interior(const std::shared_ptr<const TetMesh>& tets, const MetricNodes& metric,
                            const EmbedParams& params, const Exec& exec) {
-  warnOfInsideOut(*tets, places, exec);
-  const std::vector<BodyPart> parts = bodyParts(*tets, places);
+  warnOfInsideOut(*tets, metric.places, exec);
+  const std::vector<BodyPart> parts = bodyParts(*tets, metric);
   std::vector<Eigen::MatrixXd> x;
   for (const BodyPart& part : parts) {
     SHERD_ASSIGN(Eigen::MatrixXd coordinates, embedPart(*tets, part, params, exec));
     x.push_back(std::move(coordinates));
     exec.progress(static_cast<double>(x.size()) / static_cast<double>(parts.size()));
   }
-  Embedding out{tets, Embedding::Metric::Interior, joined(parts, x, places), 0};
+  Embedding out{tets, Embedding::Metric::Interior, joined(parts, x, metric.places), 0};
   out.diameter = boxDiagonal(out.coordinates);
   exec.info(fmt::format("interior distances in {} dimensions; edge lengths met within {:.0f} %",
-                        out.coordinates.rows(), 100 * edgeError(*tets, places, out.coordinates)));
+                        out.coordinates.rows(), 100 * edgeError(*tets, metric, out.coordinates)));
   return out;
 }
 
@@ -257,18 +288,24 @@ Result<Embedding> embed(const std::shared_ptr<const TetMesh>& tets, const EmbedP
   SHERD_CHECK(check(tets.get(), controls.rest, params));
   const bool isWarped = controls.rest != nullptr && controls.rest->positions != tets->nodes;
   const std::vector<Vec3>& places = isWarped ? controls.rest->positions : tets->nodes;
+  SHERD_ASSIGN(const std::vector<double> stretch, stretchAt(*tets, controls.stretch, exec));
+  if (params.metric == EmbedParams::Metric::Euclidean && !stretch.empty())
+    return failure("straight distances know no stretch", "choose auto or interior, or leave `stretch` open",
+                   "metric");
   if (params.metric == EmbedParams::Metric::Euclidean) return euclidean(tets, places);
-  if (params.metric == EmbedParams::Metric::Auto) {
+  if (params.metric == EmbedParams::Metric::Auto && stretch.empty()) {
     SHERD_ASSIGN(const bool convex, isConvex(*tets));
     if (convex) {
       exec.info("convex: straight distances, no embedding is computed");
       return euclidean(tets, places);
     }
   }
-  if (isWarped && params.source == EmbedParams::Source::Fine)
-    return failure("a rest shape warps the tetrahedra, not the surface that source: fine takes its modes of",
-                   "choose source: solid or surface", "source");
-  return interior(tets, places, params, exec);
+  if ((isWarped || !stretch.empty()) && params.source == EmbedParams::Source::Fine)
+    return failure(
+        "rest shapes and stretches bend the tetrahedra, not the surface that source: fine takes its "
+        "modes of",
+        "choose source: solid or surface", "source");
+  return interior(tets, {places, stretch}, params, exec);
 }
 
 }  // namespace sherd

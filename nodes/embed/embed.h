@@ -45,6 +45,14 @@
 // otherwise modes, lengths of paths and edges are all taken there. Tetrahedra may come out inside out:
 // straight distances don't mind, and interior ones take such a tetrahedron for its mirror image (a warning
 // counts them).
+//
+// Stretch (not in the paper). Lengths count s(x) times as much: the metric is s² I. An edge has the mean of
+// its ends' s, a tetrahedron the mean of its corners': stiffness is s and mass s³ as large, path and edge
+// lengths s. Where s is large, places are far from each other, so that the middle between two sites, a sheet,
+// tends to lie there: painted along a curve, it draws cracks. Straight distances don't know this, so that a
+// convex body's short cut is not taken. Under the filters `unfolded` and `fitted` coordinates from the
+// lengths of paths (unfold.h) stand for the modes, whatever the source: a band's stiffness hides from low
+// modes how far it is across.
 #pragma once
 
 #include <memory>
@@ -53,6 +61,7 @@
 #include "base/result.h"
 #include "types/partition.h"
 #include "types/rest_shape.h"
+#include "types/scalar_grid.h"
 
 namespace sherd {
 
@@ -73,16 +82,18 @@ struct EmbedParams {
 
 /// How an artist bends the metric.
 struct MetricControls {
-  const RestShape* rest = nullptr;  ///< of the same body; null: the body as it is
+  const RestShape* rest = nullptr;      ///< of the same body; null: the body as it is
+  const ScalarGrid* stretch = nullptr;  ///< s, in the body as it is, in [0.001, 1000]; null: 1 everywhere
 };
 
 /// Convex means that the surface's convex hull holds at most 1e-6 more volume than the surface.
 /// Parts of the body that aren't connected share axes, and stand 2 · (size of the body) or more apart along
 /// one more. Coordinates are about the mean by volume; signs of modes are fixed; invariant under rigid motion
 /// (to rounding, where eigenvalues are distinct), in proportion to the size. Says the metric, and how well
-/// edges are met. A rest shape that is the body gives the same bits as none. Errors: an empty mesh; a rest
-/// shape of another body; parameters out of range; libraries' failures. Cost: hull O(n log n); then that of
-/// factoring the Laplacian and `dimensions` modes.
+/// edges are met. A rest shape that is the body, and a stretch of 1, give the same bits as none. Errors: an
+/// empty mesh; a rest shape of another body; a stretch out of range, or with Metric::Euclidean; parameters
+/// out of range; libraries' failures. Cost: hull O(n log n); then that of factoring the Laplacian and
+/// `dimensions` modes.
 Result<Embedding> embed(const std::shared_ptr<const TetMesh>& tets, const EmbedParams& params,
                         const Exec& exec, const MetricControls& controls = {});
 

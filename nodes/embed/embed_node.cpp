@@ -11,6 +11,11 @@ NodeType embedNode() {
       .optionalInput<RestShape>("rest",
                                 "a warped shape that distances are taken from, from WarpRest; left open: the "
                                 "body as it is")
+      .optionalInput<ScalarGrid>(
+          "stretch",
+          "by how much lengths count, painted by PaintBeta along curves that draw cracks: 1 as is, 5 five "
+          "times as "
+          "much; thick enough to go through a wall from side to side. Left open: 1 everywhere")
       .choice(
           "metric", &P::metric,
           {{"auto", P::Metric::Auto}, {"euclidean", P::Metric::Euclidean}, {"interior", P::Metric::Interior}},
@@ -56,7 +61,8 @@ NodeType embedNode() {
       .implementation(2)
       .run([](const P& params, NodeIo& io) -> Result<void> {
         SHERD_ASSIGN(Embedding embedding, embed(io.in<TetMesh>("tets"), params, io.exec(),
-                                                {.rest = io.in<RestShape>("rest").get()}));
+                                                {.rest = io.in<RestShape>("rest").get(),
+                                                 .stretch = io.in<ScalarGrid>("stretch").get()}));
         io.out("embedding", std::move(embedding));
         return {};
       });

@@ -21,7 +21,9 @@ Eigen::VectorXd meanValueCoordinates(const Vec3& point, std::span<const Vec3> po
 
 /// u harmonic in the mesh (linear finite elements) with the given values at some nodes.
 /// `given`: per node, whether its row of `values` (nodes × k) is given; the other rows are filled in.
+/// `stretch`: as in solidLaplacian.
 Result<void> extendHarmonically(std::span<const Vec3> nodes, std::span<const Tetra> tets,
-                                const std::vector<char>& given, Eigen::MatrixXd& values);
+                                const std::vector<char>& given, Eigen::MatrixXd& values,
+                                std::span<const double> stretch = {});
 
 }  // namespace sherd

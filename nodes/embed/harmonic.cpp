@@ -8,14 +8,15 @@
 namespace sherd {
 
 Result<void> extendHarmonically(std::span<const Vec3> nodes, std::span<const Tetra> tets,
-                                const std::vector<char>& given, Eigen::MatrixXd& values) {
+                                const std::vector<char>& given, Eigen::MatrixXd& values,
+                                std::span<const double> stretch) {
   std::vector<Eigen::Index> unknownOf(nodes.size(), -1);
   Eigen::Index unknowns = 0;
   for (std::size_t n = 0; n < nodes.size(); ++n)
     if (!given[n]) unknownOf[n] = unknowns++;
   if (unknowns == 0) return {};
 
-  const Laplacian laplacian = solidLaplacian(nodes, tets);
+  const Laplacian laplacian = solidLaplacian(nodes, tets, stretch);
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(unknowns, values.cols());
   for (Eigen::Index column = 0; column < laplacian.stiffness.outerSize(); ++column)

@@ -48,6 +48,13 @@ Result<std::vector<Landmark>> landmarksOf(const BodyPart& part, const Exec& exec
   std::vector<Landmark> marks = farthestFirst(graph, part.positions.size(), exec);
   if (exec.cancelled()) return cancelledError();
   const double longer = zigzag(part, marks, graph.meanLink());
+  if (!part.stretch.empty()) {
+    const PathGraph stretched(part.positions, part.tets, part.neighbours, part.stretch);
+    for (Landmark& mark : marks) {
+      if (exec.cancelled()) return cancelledError();
+      mark.length = stretched.lengthsFrom(static_cast<Index>(mark.node));
+    }
+  }
   for (Landmark& mark : marks)
     for (double& length : mark.length) length /= longer;
   return marks;

@@ -17,6 +17,7 @@ void addBorder(BodyPart& part) {
           vertexOf[at(n)] = static_cast<Index>(part.borderNode.size());
           part.borderNode.push_back(n);
           part.borderPositions.push_back(part.positions[at(n)]);
+          if (!part.stretch.empty()) part.borderStretch.push_back(part.stretch[at(n)]);
         }
         triangle[c] = vertexOf[at(n)];
       }
@@ -30,7 +31,7 @@ void addBorder(BodyPart& part) {
 
 }  // namespace
 
-std::vector<BodyPart> bodyParts(const TetMesh& mesh, std::span<const Vec3> places) {
+std::vector<BodyPart> bodyParts(const TetMesh& mesh, const MetricNodes& metric) {
   DisjointSets groups(mesh.nodes.size());
   for (const Tetra& tet : mesh.tets)
     for (const Index n : tet) groups.join(at(tet[0]), at(n));
@@ -48,7 +49,8 @@ std::vector<BodyPart> bodyParts(const TetMesh& mesh, std::span<const Vec3> place
     BodyPart& part = parts[at(partOf[n])];
     numberOf[n] = static_cast<Index>(part.node.size());
     part.node.push_back(static_cast<Index>(n));
-    part.positions.push_back(places[n]);
+    part.positions.push_back(metric.places[n]);
+    if (!metric.stretch.empty()) part.stretch.push_back(metric.stretch[n]);
   }
 
   std::vector<Index> tetNumber(mesh.tets.size());

@@ -45,13 +45,14 @@ std::vector<Edge> linesAcrossFaces(std::span<const Vec3> nodes, std::span<const 
 }  // namespace
 
 PathGraph::PathGraph(std::span<const Vec3> nodes, std::span<const Tetra> tets,
-                     std::span<const Tetra> neighbours)
+                     std::span<const Tetra> neighbours, std::span<const double> stretch)
     : links_(nodes.size()) {
   std::vector<Edge> lines = tetEdges(tets);
   const std::vector<Edge> across = linesAcrossFaces(nodes, tets, neighbours);
   lines.insert(lines.end(), across.begin(), across.end());
   for (const auto& [a, b] : lines) {
-    const double length = (nodes[at(a)] - nodes[at(b)]).norm();
+    double length = (nodes[at(a)] - nodes[at(b)]).norm();
+    if (!stretch.empty()) length *= 0.5 * (stretch[at(a)] + stretch[at(b)]);
     links_[at(a)].push_back({b, length});
     links_[at(b)].push_back({a, length});
     meanLink_ += length / static_cast<double>(lines.size());

@@ -19,9 +19,14 @@ struct Laplacian {
 
 /// Cotangent Laplacian of a triangle surface; a third of each triangle's area per corner. Every vertex has to
 /// belong to a triangle. Triangles flatter than 1e-10 (height over length) count as that flat.
-Laplacian surfaceLaplacian(std::span<const Vec3> positions, std::span<const Triangle> triangles);
-/// The same in a tetrahedral mesh. A tetrahedron that is inside out counts as its mirror image.
-Laplacian solidLaplacian(std::span<const Vec3> positions, std::span<const Tetra> tets);
+/// `stretch`: per vertex, > 0, or empty for 1 everywhere: lengths count s times, with s the mean of an
+/// element's corners. Areas are then s² as large, and stiffness is what it was.
+Laplacian surfaceLaplacian(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                           std::span<const double> stretch = {});
+/// The same in a tetrahedral mesh. A tetrahedron that is inside out counts as its mirror image. Volumes are
+/// s³ and stiffness is s times as large.
+Laplacian solidLaplacian(std::span<const Vec3> positions, std::span<const Tetra> tets,
+                         std::span<const double> stretch = {});
 
 struct Modes {
   Eigen::VectorXd eigenvalues;  ///< ascending, 1/m²; the constant mode is left out

@@ -16,8 +16,9 @@ using Eigen::VectorXd;
 
 constexpr std::size_t kPartners = 2000;
 constexpr Eigen::Index kMostDimensions = 8;
-constexpr double kLeastAxis = 1e-3;  ///< eigenvalue of the classical scaling that counts, of the largest
-constexpr double kEnough = 1e-3;     ///< relative fall of the stress below which a step is the last
+constexpr double kLeastAxis = 1e-3;      ///< eigenvalue of the classical scaling that counts, of the largest
+constexpr double kLeastPathAxis = 1e-4;  ///< the same where paths' own coordinates are wanted
+constexpr double kEnough = 1e-3;         ///< relative fall of the stress below which a step is the last
 constexpr int kMostSteps = 300;
 constexpr double kSingular = 1e-12;
 
@@ -76,9 +77,10 @@ MatrixXd pseudoInverse(const MatrixXd& symmetric) {
   return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
 }
 
-/// Classical scaling of the landmarks, and from it places of the partners: d × partners. Empty where there
-/// are no lengths.
-MatrixXd classicalScaling(const std::vector<Landmark>& landmarks, const Targets& targets) {
+/// Classical scaling of the landmarks, and from it places for nodes whose squared lengths from the landmarks
+/// are given (landmarks × nodes): up to `most` × nodes. Empty where there are no lengths.
+MatrixXd classicalScaling(const std::vector<Landmark>& landmarks, const MatrixXd& squaredLengths,
+                          Eigen::Index most, double leastAxis) {
   const auto count = static_cast<Eigen::Index>(landmarks.size());
   MatrixXd squared(count, count);
   for (Eigen::Index i = 0; i < count; ++i)
@@ -91,12 +93,16 @@ MatrixXd classicalScaling(const std::vector<Landmark>& landmarks, const Targets&
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(-0.5 * centring * squared * centring);
   const VectorXd values = solver.eigenvalues().reverse();
   Eigen::Index used = 0;
-  while (used < std::min(count, kMostDimensions) && values[used] > kLeastAxis * values[0]) ++used;
+  while (used < std::min(count, most) && values[used] > leastAxis * values[0]) ++used;
   MatrixXd axes(used, count);
   for (Eigen::Index k = 0; k < used; ++k)
     axes.row(k) = solver.eigenvectors().col(count - 1 - k).transpose() / std::sqrt(values[k]);
-  return 0.5 * axes *
-         (squared.rowwise().mean().replicate(1, targets.length.cols()) - targets.length.cwiseAbs2());
+  return 0.5 * axes * (squared.rowwise().mean().replicate(1, squaredLengths.cols()) - squaredLengths);
+}
+
+Error noLengths() {
+  return failure("the ways inside the tetrahedral mesh have no lengths to unfold by", "use filter: diffusion",
+                 "filter");
 }
 
 /// The linear map that comes closest to the places.
@@ -138,12 +144,23 @@ Result<MatrixXd> unfolded(const BodyPart& part, const MatrixXd& functions, const
   SHERD_ASSIGN(const std::vector<Landmark> landmarks, landmarksOf(part, exec));
   const MatrixXd basis = basisOf(part, functions);
   const Targets targets = targetsOf(landmarks, basis);
-  const MatrixXd start = classicalScaling(landmarks, targets);
-  if (start.rows() == 0 || !start.allFinite())
-    return failure("the ways inside the tetrahedral mesh have no lengths to unfold by",
-                   "use filter: diffusion", "filter");
+  const MatrixXd start = classicalScaling(landmarks, targets.length.cwiseAbs2(), kMostDimensions, kLeastAxis);
+  if (start.rows() == 0 || !start.allFinite()) return noLengths();
   SHERD_ASSIGN(const MatrixXd map, majorized(fittedMap(targets.partners, start), targets, exec));
   return onPrincipalAxes(map * basis);
+}
+
+Result<MatrixXd> pathCoordinates(const BodyPart& part, int most, const Exec& exec) {
+  SHERD_ASSIGN(const std::vector<Landmark> landmarks, landmarksOf(part, exec));
+  MatrixXd squared(static_cast<Eigen::Index>(landmarks.size()),
+                   static_cast<Eigen::Index>(part.positions.size()));
+  for (std::size_t m = 0; m < landmarks.size(); ++m)
+    for (std::size_t n = 0; n < part.positions.size(); ++n)
+      squared(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(n)) =
+          std::pow(landmarks[m].length[n], 2);
+  const MatrixXd places = classicalScaling(landmarks, squared, most, kLeastPathAxis);
+  if (places.rows() == 0 || !places.allFinite()) return noLengths();
+  return places;
 }
 
 }  // namespace sherd

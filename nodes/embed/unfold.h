@@ -22,4 +22,10 @@ namespace sherd {
 /// · links · log nodes), and per step O(landmarks · partners · K).
 Result<Eigen::MatrixXd> unfolded(const BodyPart& part, const Eigen::MatrixXd& functions, const Exec& exec);
 
+/// Coordinates, up to `most` × nodes, from the lengths alone: classical scaling of those between the
+/// landmarks, the other nodes placed by theirs to all landmarks (de Silva and Tenenbaum 2004). Rows of
+/// descending extent. They hold what smooth functions do not show, as how far it is across a narrow band of
+/// stretched lengths, and the zigzag of paths. Errors: there are no lengths; cancelled.
+Result<Eigen::MatrixXd> pathCoordinates(const BodyPart& part, int most, const Exec& exec);
+
 }  // namespace sherd

@@ -98,6 +98,36 @@ TEST(BentMetric, AProtectedRegionStaysWhole) {
   EXPECT_EQ(crackNear(out + "/protect_1", dab, 0.02), 0);
 }
 
+/// Share of the cracks' area that lies in the ring that attract.json paints, by centroids.
+double shareInTheRing(const std::string& directory) {
+  double inside = 0, all = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+    if (!entry.path().string().ends_with("_crack.obj")) continue;
+    for (const auto& t : readObjTriangles(entry.path()).triangles) {
+      const Vec3 a = Vec3::Map(t[0].data()), b = Vec3::Map(t[1].data()), c = Vec3::Map(t[2].data());
+      const Vec3 centre = (a + b + c) / 3;
+      const double area = 0.5 * (b - a).cross(c - a).norm();
+      const double off = std::hypot(centre.x(), centre.y() - 0.42) - 0.28;
+      all += area;
+      if (std::abs(off) < 0.07) inside += area;
+    }
+  }
+  return inside / all;
+}
+
+TEST(SlowBentMetric, CracksAreDrawnToAPaintedRing) {
+  const ScratchDirectory scratch;
+  const std::string out = scratch.file("out");
+  const ProgramRun run =
+      runProgram("run '" + kFigures + "attract.json' --target all --var out='" + out + "'" + kQuick);
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  for (const char* name : {"/stretch_1", "/stretch_5"}) expectSound(out + name, kAssets + "wall.obj");
+  const double plain = shareInTheRing(out + "/stretch_1"), drawn = shareInTheRing(out + "/stretch_5");
+  RecordProperty("plain", std::to_string(plain));
+  RecordProperty("drawn", std::to_string(drawn));
+  EXPECT_GT(drawn, 1.4 * plain);
+}
+
 TEST(SlowBentMetric, Figure6HasConcavePieces) {
   const ScratchDirectory scratch;
   const std::string out = scratch.file("out");

@@ -14,7 +14,7 @@
 namespace sherd {
 namespace {
 
-BodyPart partOf(const TetMesh& mesh) { return bodyParts(mesh, mesh.nodes).front(); }
+BodyPart partOf(const TetMesh& mesh) { return bodyParts(mesh, {.places = mesh.nodes}).front(); }
 
 double linear(const Vec3& p) { return 0.3 + p.dot(Vec3(1.5, -2, 0.7)); }
 
@@ -140,7 +140,7 @@ TEST(Paths, StraightAlongEdgesAndNoneBetweenParts) {
 
 TEST(BodyParts, AreNumberedByTheirLowestNodes) {
   const TetMesh boxes = families::twoBoxes(2, 1, 0.5);
-  const std::vector<BodyPart> parts = bodyParts(boxes, boxes.nodes);
+  const std::vector<BodyPart> parts = bodyParts(boxes, {.places = boxes.nodes});
   ASSERT_EQ(parts.size(), 2u);
   for (const BodyPart& part : parts) {
     EXPECT_EQ(part.node.size(), 27u);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/parallel.h"
+#include "predict_degree/predict_degree.h"
 #include "support/broken_box.h"
 #include "support/said.h"
 #include "support/tet_families.h"
@@ -152,6 +153,26 @@ TEST(WarpRest, PiecesAreLongAlongTheAxis) {
   const Fragments plates = test::broken(box, 60, {.rest = &flat4});
   RecordProperty("elongation_1/4", std::to_string(test::meanElongation(plates, axis)));
   EXPECT_LT(test::meanElongation(plates, axis), plain / 2.2);
+}
+
+TEST(WarpRest, GammaKeepsItsMeaning) {
+  const Mesh box = cagedBox();
+  const WeightField weights = test::evenWeights(box);
+  const auto degree = [&](double elongation, double gamma) {
+    const RestShape rest = warped(box, {.elongation = elongation, .axis = Vec3(1, 1, 0)});
+    const auto e = embed(box, {}, Exec{}, {.rest = &rest});
+    EXPECT_TRUE(e.ok());
+    const auto sites = predictDegree(weights, *e, {.gamma = gamma}, Exec{});
+    EXPECT_TRUE(sites.ok());
+    return static_cast<double>(sites->positions.cols());
+  };
+  const auto whole = predictDegree(weights, *embed(box, {}, Exec{}), {.degree = 1}, Exec{});
+  ASSERT_TRUE(whole.ok());
+  for (const double share : {5.0, 12.0}) {
+    const double gamma = whole->energy / share, plain = degree(1, gamma);
+    EXPECT_GT(plain, 8);
+    for (const double elongation : {0.25, 4.0}) EXPECT_NEAR(degree(elongation, gamma), plain, 0.25 * plain);
+  }
 }
 
 TEST(WarpRest, WavesMakeConcavePieces) {
