@@ -8,6 +8,8 @@ NodeType predictDegreeNode() {
              "PredictDegree", 1, "Decides from the energy into how many pieces the body breaks, and where.")
       .input<WeightField>("weights", "what each node weighs, from Weights")
       .input<Embedding>("embedding", "the distances to measure with, from Embed")
+      .optionalInput<DegreeModel>("model",
+                                  "what was learned of this body, from TrainDegree; left open: searches")
       .number(
           "gamma", &PredictDegreeParams::gamma,
           {.unit = "J·m²",
@@ -21,12 +23,18 @@ NodeType predictDegreeNode() {
       .integer(
           "max_degree", &PredictDegreeParams::maxDegree,
           {.unit = "", .min = 1, .max = 1e6, .help = "the search by γ ends at so many sites, with a warning"})
+      .choice("outside", &PredictDegreeParams::outside,
+              {{"search", OutsideModel::Search}, {"predict", OutsideModel::Predict}},
+              "with a model, what to do with a hit unlike all that it was made of")
       .output<std::int64_t>("degree", "number of sites N; 1: it does not break")
       .output<Sites>("sites", "the sites, with E_D and γ")
       .output<double>("energy", "E_D of these sites, J·m²")
       .run([](const PredictDegreeParams& params, NodeIo& io) -> Result<void> {
-        SHERD_ASSIGN(Sites sites, predictDegree(*io.in<WeightField>("weights"),
-                                                *io.in<Embedding>("embedding"), params, io.exec()));
+        const auto weights = io.in<WeightField>("weights");
+        const auto embedding = io.in<Embedding>("embedding");
+        const auto model = io.in<DegreeModel>("model");
+        SHERD_ASSIGN(Sites sites, model ? predictByModel(*model, *weights, embedding, params, io.exec())
+                                        : predictDegree(*weights, *embedding, params, io.exec()));
         io.out("degree", static_cast<std::int64_t>(sites.positions.cols()));
         io.out("energy", sites.energy);
         io.out("sites", std::move(sites));
