@@ -12,6 +12,7 @@ NodeType readVdbNode();
 NodeType paintBetaNode();
 NodeType writeVdbNode();
 NodeType weightsNode();
+NodeType trainDegreeNode();
 NodeType predictDegreeNode();
 NodeType cvdNode();
 NodeType tessellateNode();
@@ -27,7 +28,7 @@ NodeType contactSheetNode();
 
 SHERD_NODE_PACK(sherd::loadMeshNode, sherd::repairNode, sherd::tetrahedralizeNode, sherd::embedNode,
                 sherd::simulateNode, sherd::readVdbNode, sherd::paintBetaNode, sherd::writeVdbNode,
-                sherd::weightsNode, sherd::predictDegreeNode, sherd::cvdNode, sherd::tessellateNode,
-                sherd::selectPieceNode, sherd::convexProxiesNode, sherd::exportCrackSurfaceNode,
-                sherd::exportPiecesNode, sherd::exportProxiesNode, sherd::previewNode,
-                sherd::contactSheetNode)
+                sherd::weightsNode, sherd::trainDegreeNode, sherd::predictDegreeNode, sherd::cvdNode,
+                sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
+                sherd::exportCrackSurfaceNode, sherd::exportPiecesNode, sherd::exportProxiesNode,
+                sherd::previewNode, sherd::contactSheetNode)

@@ -25,7 +25,8 @@ struct Output {
   double y = 0, deviation = 0;
 };
 
-Output outputOf(const DegreeModel& model, const Eigen::VectorXd& z, const Eigen::VectorXd& distance) {
+Output outputOf(const DegreeModel& model, const Eigen::VectorXd& z, const Eigen::VectorXd& distance,
+                Deviation deviation) {
   const bool isProcess = model.method == DegreeMethod::Process;
   Eigen::VectorXd phi(static_cast<Eigen::Index>(model.centres.size()));
   for (Eigen::Index k = 0; k < phi.size(); ++k) {
@@ -35,7 +36,7 @@ Output outputOf(const DegreeModel& model, const Eigen::VectorXd& z, const Eigen:
   const auto features = static_cast<Eigen::Index>(model.slope.size());
   Output out;
   out.y = model.bias + asVector(model.slope).dot(z.head(features)) + asVector(model.coefficient).dot(phi);
-  if (model.inverse.size() == 0) return out;
+  if (deviation == Deviation::Unknown || model.inverse.size() == 0) return out;
   const auto trend = [&](const auto& a) {
     return kTrendVariance + model.trend * a.head(features).dot(z.head(features));
   };
@@ -53,7 +54,7 @@ int rounded(double pieces, double least) {
 }  // namespace
 
 DegreeEstimate estimateDegree(const DegreeModel& model, const WeightField& weights,
-                              const Embedding& embedding) {
+                              const Embedding& embedding, Deviation deviation) {
   const bool isProcess = model.method == DegreeMethod::Process;
   if (isProcess && wholeEnergy(weights.weight, weights.volume, embedding) < model.validFor.gamma) return {};
   const WeightPoint point = pointOf(model, weights.weight, weights.volume, embedding);
@@ -63,7 +64,7 @@ DegreeEstimate estimateDegree(const DegreeModel& model, const WeightField& weigh
   if (distance2.size() > 0)
     estimate.distance = std::sqrt(distance2.minCoeff() + point.residual * point.residual);
   estimate.isOutside = !(estimate.distance <= model.reach + kSamePoint * (1 + point.z.norm()));
-  const Output out = outputOf(model, point.z, distance2.cwiseSqrt());
+  const Output out = outputOf(model, point.z, distance2.cwiseSqrt(), deviation);
   if (!isProcess) {
     estimate.degree = rounded(out.y, 1);
     return estimate;

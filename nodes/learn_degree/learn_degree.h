@@ -70,15 +70,17 @@ Result<DegreeModel> learnDegree(const std::vector<DegreeExample>& examples, cons
 
 struct DegreeEstimate {
   int degree = 1;          ///< N ≥ 1
-  double deviation = 0;    ///< standard deviation of N; 0 where the method knows none
+  double deviation = 0;    ///< standard deviation of N; 0 where it isn't asked for, or the method knows none
   double distance = 0;     ///< to the nearest example, in what the model compares
   bool isOutside = false;  ///< distance > reach: nothing like it was learned
 };
 
-/// `weights` and `embedding` that checkValidity accepts. Cost O(nodes · (components + dimensions)); no more
-/// than 2^20 pieces are foretold.
+enum class Deviation { Unknown, Known };
+
+/// `weights` and `embedding` that checkValidity accepts. No more than 2^20 pieces are foretold. Cost O(nodes
+/// · (components + dimensions) + examples · components); with the deviation also O(centres²).
 DegreeEstimate estimateDegree(const DegreeModel& model, const WeightField& weights,
-                              const Embedding& embedding);
+                              const Embedding& embedding, Deviation deviation = Deviation::Unknown);
 
 /// What a degree for these depends on.
 DegreeValidity validityOf(const WeightField& weights, const std::shared_ptr<const Embedding>& embedding,

@@ -8,6 +8,8 @@ namespace {
 
 /// What a feature that is next to nothing counts as, relative to the largest: its logarithm has to be finite.
 constexpr double kLeastShare = 1e-12;
+/// In place of a share of nothing, whose logarithm has to be finite.
+constexpr double kNothing = 1e-300;
 
 Eigen::VectorXd centroid(const std::vector<double>& volume, const Embedding& embedding) {
   const auto v = Eigen::Map<const Eigen::VectorXd>(volume.data(), static_cast<Eigen::Index>(volume.size()));
@@ -30,28 +32,23 @@ double wholeEnergy(const std::vector<double>& weight, const std::vector<double>&
 Eigen::Matrix<double, kFeatures, 1> logFeatures(const std::vector<double>& weight,
                                                 const std::vector<double>& volume, const Embedding& embedding,
                                                 double gamma) {
-  const double totalWeight = std::accumulate(weight.begin(), weight.end(), 0.0);
-  const double totalVolume = std::accumulate(volume.begin(), volume.end(), 0.0);
+  const auto asArray = [](const std::vector<double>& v) {
+    return Eigen::Map<const Eigen::ArrayXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+  };
   const Eigen::VectorXd c = centroid(volume, embedding);
-  Eigen::VectorXd first = Eigen::VectorXd::Zero(c.size());
-  double second = 0, threeFifths = 0, third = 0;
-  for (std::size_t n = 0; n < weight.size(); ++n) {
-    if (!(weight[n] > 0)) continue;
-    const double w = weight[n] / totalWeight, v = volume[n] / totalVolume;
-    const auto x = embedding.coordinates.col(static_cast<Eigen::Index>(n)) - c;
-    first += w * x;
-    second += w * x.squaredNorm();
-    if (!(v > 0)) continue;
-    // Shares, so that no power over- or underflows whatever the units.
-    threeFifths += v * std::pow(w / v, 0.6);
-    third += v * std::cbrt(w / v);
-  }
+  // Shares, so that no power over- or underflows whatever the units.
+  const double totalWeight = asArray(weight).sum(), totalVolume = asArray(volume).sum();
+  const Eigen::ArrayXd w = asArray(weight) / totalWeight, v = asArray(volume) / totalVolume;
+  const double second =
+      (embedding.coordinates.colwise() - c).colwise().squaredNorm().dot(w.matrix().transpose());
+  const double first2 = (embedding.coordinates * w.matrix() - c).squaredNorm();
+  const Eigen::ArrayXd logDensity = w.max(kNothing).log() - v.max(kNothing).log();
+  const double threeFifths = (v * (0.6 * logDensity).exp()).sum();
+  const double third = (v * (logDensity / 3).exp()).sum();
   const double size2 = embedding.diameter * embedding.diameter;
-  const double spread = second - first.squaredNorm();
-  const double volume2 = std::pow(totalVolume, 2.0 / 3);
-  const double least = kLeastShare * size2;
+  const double volume2 = std::pow(totalVolume, 2.0 / 3), least = kLeastShare * size2;
   Eigen::Matrix<double, kFeatures, 1> out;
-  out << std::max(second, least), std::max(spread, least), size2,
+  out << std::max(second, least), std::max(second - first2, least), size2,
       volume2 * std::max(std::pow(threeFifths, 5.0 / 3), kLeastShare),
       volume2 * std::max(third * third * third, kLeastShare);
   return out.array().log() + (std::log(totalWeight) - std::log(gamma));

@@ -42,7 +42,7 @@ Result<Sites> predictByModel(const DegreeModel& model, const WeightField& weight
   if (params.degree == 0) {
     SHERD_CHECK(checkLloydInput(*embedding, weights));
     SHERD_CHECK(checkValidity(model, validityOf(weights, embedding, params.gamma)));
-    grown.degree = foretold(estimateDegree(model, weights, *embedding), params, exec);
+    grown.degree = foretold(estimateDegree(model, weights, *embedding, Deviation::Known), params, exec);
   }
   return predictDegree(weights, *embedding, grown, exec);
 }

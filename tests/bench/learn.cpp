@@ -12,6 +12,7 @@
 // section of FILE.md.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -112,12 +113,12 @@ struct Comparison {
 
 Comparison compare(const Body& body, const DropExamples& drops, const DegreeModel& model) {
   Comparison c;
-  double seconds = 0;
+  std::vector<double> seconds;
   for (const DropExample& drop : drops.drops) {
     if (drop.example.degree.empty()) continue;
     const WeightField field{body.tets, {}, drop.example.weight, drops.volume};
     DegreeEstimate estimate;
-    seconds += secondsOf([&] { estimate = estimateDegree(model, field, *body.embedding); });
+    seconds.push_back(secondsOf([&] { estimate = estimateDegree(model, field, *body.embedding); }));
     c.outside += estimate.isOutside;
     double mean = 0;
     for (const int degree : drop.example.degree) mean += degree;
@@ -132,7 +133,9 @@ Comparison compare(const Body& body, const DropExamples& drops, const DegreeMode
       c.noise += std::abs(degree - mean);
     }
   }
-  c.microseconds = 1e6 * seconds / static_cast<double>(drops.drops.size());
+  const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
+  std::nth_element(seconds.begin(), middle, seconds.end());
+  c.microseconds = 1e6 * *middle;
   return c;
 }
 

@@ -84,18 +84,21 @@ inline ContractExceptions packExceptions() {
       // counts
       "ContactSheet.columns", "ConvexProxies.max_hulls", "CVD.degree", "CVD.max_iterations",
       "Embed.dimensions", "PredictDegree.degree", "PredictDegree.max_degree", "Preview.samples",
-      "Repair.resolution", "SelectPiece.number", "Tetrahedralize.tets",
+      "Repair.resolution", "SelectPiece.number", "Tetrahedralize.tets", "TrainDegree.max_degree",
+      "TrainDegree.orientations", "TrainDegree.repeats",
       // seeds
-      "CVD.seed", "PaintBeta.seed", "PredictDegree.seed",
+      "CVD.seed", "PaintBeta.seed", "PredictDegree.seed", "TrainDegree.seed",
       // shares and ratios of equal quantities
       "ConvexProxies.tolerance", "CVD.tolerance", "Embed.tolerance", "Embed.time", "Preview.explode",
       "Repair.crack", "Repair.leaf", "Repair.small_hole", "Simulate.ball_target", "Simulate.friction",
       "Simulate.obstacle_poisson", "SelectPiece.poisson", "Simulate.poisson", "Simulate.restitution",
-      "Tessellate.min_volume",
+      "Tessellate.min_volume", "TrainDegree.error", "TrainDegree.friction", "TrainDegree.obstacle_poisson",
+      "TrainDegree.pca_tolerance", "TrainDegree.poisson", "TrainDegree.restitution",
+      "TrainDegree.training_error",
       // values of whatever is painted
       "PaintBeta.background", "PaintBeta.high", "PaintBeta.low", "PaintBeta.threshold",
       // an exponent
-      "Weights.alpha",
+      "TrainDegree.alpha", "Weights.alpha",
       // a direction
       "Simulate.ball_direction"};
   exceptions.names = {"E_D", "Young's", "Poisson's", "Coulomb's"};

@@ -30,7 +30,7 @@ DegreeModel learned(const Cloud& c, const std::vector<DegreeExample>& examples, 
 }
 
 DegreeEstimate estimate(const Cloud& c, const DegreeModel& model, const std::vector<double>& weight) {
-  return estimateDegree(model, {nullptr, {}, weight, c.weights.volume}, *c.embedding);
+  return estimateDegree(model, {nullptr, {}, weight, c.weights.volume}, *c.embedding, Deviation::Known);
 }
 
 /// γ for which a hit of 1 J gives about `pieces`.
