@@ -15,6 +15,7 @@ NodeType paintBetaNode();
 NodeType writeVdbNode();
 NodeType weightsNode();
 NodeType pinSitesNode();
+NodeType trainDegreeNode();
 NodeType predictDegreeNode();
 NodeType calibrateToughnessNode();
 NodeType cvdNode();
@@ -31,8 +32,8 @@ NodeType contactSheetNode();
 
 SHERD_NODE_PACK(sherd::loadMeshNode, sherd::repairNode, sherd::tetrahedralizeNode, sherd::warpRestNode,
                 sherd::embedNode, sherd::protectNode, sherd::simulateNode, sherd::readVdbNode,
-                sherd::paintBetaNode, sherd::writeVdbNode, sherd::weightsNode, sherd::pinSitesNode,
-                sherd::predictDegreeNode, sherd::calibrateToughnessNode, sherd::cvdNode,
+                sherd::paintBetaNode, sherd::writeVdbNode, sherd::weightsNode, sherd::trainDegreeNode,
+                sherd::pinSitesNode, sherd::predictDegreeNode, sherd::calibrateToughnessNode, sherd::cvdNode,
                 sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
                 sherd::exportCrackSurfaceNode, sherd::exportPiecesNode, sherd::exportProxiesNode,
                 sherd::previewNode, sherd::contactSheetNode)

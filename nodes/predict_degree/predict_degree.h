@@ -9,18 +9,25 @@
 // centroid by volume: E_D(1) < γ means that the hit is too weak to break it.
 #pragma once
 
+#include <memory>
+
 #include "base/exec.h"
 #include "base/result.h"
+#include "types/degree_model.h"
 #include "types/fields.h"
 #include "types/partition.h"
 
 namespace sherd {
 
+/// What to do with a hit that lies far outside of what a model was made of.
+enum class OutsideModel { Search, Predict };
+
 struct PredictDegreeParams {
   double gamma = 1e-4;  ///< J·m², ≥ 0: halved, more pieces
   int degree = 0;       ///< ≥ 0; 0: from the energy, otherwise that many sites, whatever γ
   std::int64_t seed = 1;
-  int maxDegree = 1000;  ///< ≥ 1, of the search by γ
+  int maxDegree = 1000;  ///< ≥ 1, of the search by γ, and of what a model foretells
+  OutsideModel outside = OutsideModel::Search;
 };
 
 /// `pinned`: sites of the same embedding that are pinned by hand, or null. They count among the N, are the
@@ -39,5 +46,15 @@ inline Result<Sites> predictDegree(const WeightField& weights, const Embedding& 
                                    const PredictDegreeParams& params, const Exec& exec) {
   return predictDegree(weights, embedding, nullptr, params, exec);
 }
+
+/// The same with what was learned of the body in place of the search: as many sites as the model foretells,
+/// grown as with `degree` (from those pinned); a degree that is given goes before. Says what it foretells;
+/// warns where the hit lies outside of what the model was made of, and then does as `outside` says. Errors:
+/// also a model that was made for something else, by all that differs. Cost beyond growing: that of
+/// estimateDegree (learn_degree/learn_degree.h).
+Result<Sites> predictByModel(const DegreeModel& model, const WeightField& weights,
+                             const std::shared_ptr<const Embedding>& embedding,
+                             const PredictDegreeParams& params, const Exec& exec,
+                             const Sites* pinned = nullptr);
 
 }  // namespace sherd

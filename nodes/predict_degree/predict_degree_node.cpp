@@ -10,6 +10,8 @@ NodeType predictDegreeNode() {
       .input<Embedding>("embedding", "the distances to measure with, from Embed")
       .optionalInput<Sites>("pinned",
                             "sites that stay where they are, from PinSites; they count among the pieces")
+      .optionalInput<DegreeModel>("model",
+                                  "what was learned of this body, from TrainDegree; left open: searches")
       .number(
           "gamma", &PredictDegreeParams::gamma,
           {.unit = "J·m²",
@@ -24,15 +26,21 @@ NodeType predictDegreeNode() {
       .integer(
           "max_degree", &PredictDegreeParams::maxDegree,
           {.unit = "", .min = 1, .max = 1e6, .help = "the search by γ ends at so many sites, with a warning"})
+      .choice("outside", &PredictDegreeParams::outside,
+              {{"search", OutsideModel::Search}, {"predict", OutsideModel::Predict}},
+              "with a model, what to do with a hit unlike all that it was made of")
       .output<std::int64_t>("degree", "number of sites N; 1: it does not break")
       .output<Sites>("sites", "the sites, with E_D and γ")
       .output<double>("energy", "E_D of these sites, J·m²")
       .implementation(2)
       .run([](const PredictDegreeParams& params, NodeIo& io) -> Result<void> {
+        const auto weights = io.in<WeightField>("weights");
+        const auto embedding = io.in<Embedding>("embedding");
+        const auto model = io.in<DegreeModel>("model");
         const auto pinned = io.in<Sites>("pinned");
         SHERD_ASSIGN(Sites sites,
-                     predictDegree(*io.in<WeightField>("weights"), *io.in<Embedding>("embedding"),
-                                   pinned.get(), params, io.exec()));
+                     model ? predictByModel(*model, *weights, embedding, params, io.exec(), pinned.get())
+                           : predictDegree(*weights, *embedding, pinned.get(), params, io.exec()));
         io.out("degree", static_cast<std::int64_t>(sites.positions.cols()));
         io.out("energy", sites.energy);
         io.out("sites", std::move(sites));

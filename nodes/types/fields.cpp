@@ -55,6 +55,8 @@ void hashValue(Hasher& hasher, const WeightField& field) {
   hashPart(hasher, field.tets);
   hashBits(hasher, field.material);
   hasher.add(field.weight).add(field.volume);
+  hashBits(hasher, field.alpha);
+  hasher.add(field.beta);
 }
 
 std::size_t byteSize(const Impact& impact) {
@@ -118,6 +120,8 @@ void saveValue(ArchiveWriter& to, const WeightField& field) {
   putBits(to, field.material);
   to.array(field.weight);
   to.array(field.volume);
+  to.put(field.alpha);
+  to.put(field.beta);
 }
 
 std::optional<WeightField> loadValue(ArchiveReader& from, std::type_identity<WeightField>) {
@@ -126,6 +130,8 @@ std::optional<WeightField> loadValue(ArchiveReader& from, std::type_identity<Wei
   getBits(from, field->material);
   from.array(field->weight);
   from.array(field->volume);
+  from.get(field->alpha);
+  field->beta = from.digest();
   const std::size_t nodes = nodeCount(field->tets);
   if (!from.ok() || field->weight.size() != nodes || field->volume.size() != nodes) field.reset();
   return field;

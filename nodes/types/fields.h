@@ -55,11 +55,13 @@ struct EnergyField {
 /// w_n of design section 4, point 1: β V (e/V)^α, rescaled. The only weights that later steps use.
 struct WeightField {
   static constexpr const char* typeName = "Weights";
-  static constexpr int archiveVersion = 1;
+  static constexpr int archiveVersion = 2;
   std::shared_ptr<const TetMesh> tets;
   Material material;
   std::vector<double> weight;  ///< J, per node, ≥ 0
   std::vector<double> volume;  ///< m³, per node: V_n, used where a cell's weights are all zero
+  double alpha = 1;            ///< what they were made with
+  Digest beta{};               ///< of β at the nodes; zero where it is 1 at all of them
 };
 
 void hashValue(Hasher& hasher, const Impact& impact);

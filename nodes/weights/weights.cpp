@@ -60,10 +60,23 @@ Result<std::vector<double>> unitWeights(const EnergyField& energy, const std::ve
   return out;
 }
 
+/// Of β at the nodes that can weigh; zero where that is 1 everywhere.
+Digest digestOfBeta(const ScalarGrid& beta, const std::vector<double>& samples,
+                    const std::vector<double>& volume) {
+  std::vector<double> used(volume.size(), 1.0);
+  bool isOne = true;
+  for (std::size_t n = 0; n < volume.size(); ++n) {
+    if (volume[n] > 0) used[n] = samples[beta.isConstant() ? 0 : n];
+    isOne = isOne && used[n] == 1;
+  }
+  return isOne ? Digest{} : Hasher().add(used).digest();
+}
+
 Result<void> applyBeta(const ScalarGrid& beta, WeightField& field) {
   const std::vector<Vec3>& nodes = field.tets->nodes;
   std::vector<double> samples(beta.isConstant() ? 1 : nodes.size());
   beta.sample(std::span<const Vec3>(nodes).first(samples.size()), samples);
+  field.beta = digestOfBeta(beta, samples, field.volume);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const double value = samples[beta.isConstant() ? 0 : n];
     if (!(field.volume[n] > 0)) continue;
@@ -86,7 +99,7 @@ Result<WeightField> weights(const EnergyField& energy, const ScalarGrid* beta, c
   if (!(params.alpha >= 0 && params.alpha <= 4))
     return failure(fmt::format("α is {}", params.alpha), "it has to be between 0 and 4", "alpha");
   SHERD_CHECK(checkEnergy(energy));
-  WeightField field{energy.tets, energy.material, {}, lumpedVolumes(*energy.tets)};
+  WeightField field{energy.tets, energy.material, {}, lumpedVolumes(*energy.tets), params.alpha};
   if (field.volume.empty()) return failure("the tetrahedral mesh is empty", {}, "energy");
   SHERD_ASSIGN(field.weight, unitWeights(energy, field.volume, params.alpha));
   if (exec.cancelled()) return cancelledError();

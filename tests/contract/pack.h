@@ -85,17 +85,21 @@ inline ContractExceptions packExceptions() {
       "CalibrateToughness.pieces", "ContactSheet.columns", "ConvexProxies.max_hulls", "CVD.degree",
       "CVD.max_iterations", "Embed.dimensions", "PredictDegree.degree", "PredictDegree.max_degree",
       "Preview.samples", "Repair.resolution", "SelectPiece.number", "Tetrahedralize.tets",
+      "TrainDegree.max_degree", "TrainDegree.orientations", "TrainDegree.repeats",
       // seeds
-      "CVD.seed", "CalibrateToughness.seed", "PaintBeta.seed", "PredictDegree.seed", "WarpRest.seed",
+      "CalibrateToughness.seed", "CVD.seed", "PaintBeta.seed", "PredictDegree.seed", "TrainDegree.seed",
+      "WarpRest.seed",
       // shares and ratios of equal quantities
       "ConvexProxies.tolerance", "CVD.tolerance", "Embed.tolerance", "Embed.time", "Preview.explode",
       "Preview.slice_at", "Repair.crack", "Repair.leaf", "Repair.small_hole", "SelectPiece.poisson",
       "Simulate.ball_target", "Simulate.friction", "Simulate.obstacle_poisson", "Simulate.poisson",
-      "Simulate.restitution", "Tessellate.min_volume", "WarpRest.elongation",
+      "Simulate.restitution", "Tessellate.min_volume", "TrainDegree.error", "TrainDegree.friction",
+      "TrainDegree.obstacle_poisson", "TrainDegree.pca_tolerance", "TrainDegree.poisson",
+      "TrainDegree.restitution", "TrainDegree.training_error", "WarpRest.elongation",
       // values of whatever is painted
       "PaintBeta.background", "PaintBeta.high", "PaintBeta.low", "PaintBeta.threshold", "Protect.threshold",
-      // an exponent
-      "Weights.alpha",
+      // exponents
+      "TrainDegree.alpha", "Weights.alpha",
       // directions
       "Simulate.ball_direction", "WarpRest.axis", "WarpRest.wave_shift", "WarpRest.wave_travel"};
   exceptions.names = {"E_D", "Young's", "Poisson's", "Coulomb's"};

@@ -76,7 +76,8 @@ TEST_P(SlowPackContract, EndsSoonAfterItIsCancelled) {
 TEST_P(SlowPackContract, EndsSoonAfterItIsCancelledOnALargeMesh) {
   const std::string bunny = SHERD_SOURCE_DIR "/../shared/meshes/bunny.obj";
   if (!std::filesystem::exists(bunny)) GTEST_SKIP() << "there is no " << bunny;
-  const PackExamples examples({"mesh=" + bunny, "tets=20000", "degree=48", "width=1280", "samples=16"});
+  const PackExamples examples(
+      {"mesh=" + bunny, "tets=20000", "degree=48", "gamma=2", "width=1280", "samples=16"});
   for (const Example& example : examples.of(GetParam())) expectQuickEnd(example, {.delays = 10});
 }
 

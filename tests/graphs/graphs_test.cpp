@@ -250,6 +250,22 @@ TEST(SlowGraphs, HigherDropsBreakIntoMorePieces) {
   EXPECT_LT(low.pieces, high.pieces);
 }
 
+TEST(Graphs, LearnedDegreesStandInForSearches) {
+  const ScratchDirectory scratch;
+  const ProgramRun run =
+      runProgram("run '" + kGraphs + "learn.json' --to crack --frames 1,4 --var orientations=8 " +
+                 "--var out='" + scratch.file("out") + "'");
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  EXPECT_NE(run.output.find("learned from 32 drops"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("the model foretells"), std::string::npos) << run.output;
+  expectBroken(scratch.file("out/0001"), kAssets + "mushroom.obj", 2, 80);
+  const ProgramRun other =
+      runProgram("run '" + kGraphs + "learn.json' --to degree --frames 1 --var orientations=8 " +
+                 "--set weights.alpha=0.5 --var out='" + scratch.file("out") + "'");
+  EXPECT_EQ(other.exitCode, 1);
+  EXPECT_NE(other.output.find("α (1 there, 0.5 here)"), std::string::npos) << other.output;
+}
+
 class SlowModels : public testing::TestWithParam<std::tuple<const char*, int>> {};
 
 TEST_P(SlowModels, KeepEveryPromise) {

@@ -32,6 +32,10 @@ WeightField full() {
   return made::weightField();
 }
 template <>
+DegreeModel full() {
+  return made::degreeModel();
+}
+template <>
 Embedding full() {
   return made::embedding();
 }
@@ -73,8 +77,8 @@ class Archive : public testing::Test {
   }
 };
 
-using Types = testing::Types<TriMesh, TetMesh, Impact, EnergyField, WeightField, Embedding, RestShape, Sites,
-                             Partition, Fragments, Proxies>;
+using Types = testing::Types<TriMesh, TetMesh, Impact, EnergyField, WeightField, DegreeModel, Embedding,
+                             RestShape, Sites, Partition, Fragments, Proxies>;
 TYPED_TEST_SUITE(Archive, Types);
 
 TYPED_TEST(Archive, AnEmptyValueComesBack) { this->expectRoundTrip(TypeParam()); }
@@ -222,6 +226,18 @@ TEST(ArchiveChecks, Fields) {
   EXPECT_TRUE(accepted<EnergyField>([](EnergyField& f) { f.displacement.clear(); }));
   EXPECT_FALSE(accepted<WeightField>([](WeightField& f) { f.weight.pop_back(); }));
   EXPECT_FALSE(accepted<WeightField>([](WeightField& f) { f.volume.pop_back(); }));
+}
+
+TEST(ArchiveChecks, DegreeModel) {
+  EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.method = static_cast<DegreeMethod>(3); }));
+  EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.mean.pop_back(); }));
+  EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.featureScale.resize(3, 1); }));
+  EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.points.resize(4, 7); }));
+  EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.centres[0] = 7; }));
+  EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.centres[0] = -1; }));
+  EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.coefficient.pop_back(); }));
+  EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.slope.pop_back(); }));
+  EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.inverse.resize(2, 1); }));
 }
 
 TEST(ArchiveChecks, EmbeddingSitesAndPartition) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "support/tet_families.h"
+#include "types/degree_model.h"
 #include "types/fields.h"
 #include "types/fragments.h"
 #include "types/partition.h"
@@ -84,7 +85,31 @@ inline WeightField weightField() {
   field.material = {1, 2, -0.25};
   field.weight.assign(field.tets->nodes.size(), 0.125);
   field.volume.assign(field.tets->nodes.size(), 0.75);
+  field.alpha = -0.0;
+  field.beta = {1, 2};
   return field;
+}
+
+inline DegreeModel degreeModel() {
+  DegreeModel m;
+  m.validFor = {{1, 2}, {3, 4}, {7800, 2e11, 0.3}, kSmallest, 0.5, {5, 6}};
+  m.method = DegreeMethod::Network;
+  m.scale = -0.0;
+  m.mean = {1, -0.0, kSmallest, 4};
+  m.basis = Eigen::MatrixXd::Random(2, 4);
+  m.residualFactor = 0.5;
+  m.featureScale = Eigen::MatrixXd::Random(3, 2);
+  m.points = Eigen::MatrixXd::Random(5, 7);
+  m.centres = {6, 0};
+  m.coefficient = {-0.0, kLargest};
+  m.slope = {1, 2, kNan};
+  m.bias = -0.0;
+  m.inverse = Eigen::MatrixXd::Identity(2, 2);
+  m.variance = 3;
+  m.trend = kNan;
+  m.reach = kSmallest;
+  m.errors = {1, 2, -0.0, 4, 5};
+  return m;
 }
 
 inline Embedding embedding() {

@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "types/degree_model.h"
 #include "types/fields.h"
 #include "types/fragments.h"
 #include "types/partition.h"
@@ -77,9 +78,25 @@ auto of(Maybe<EnergyField> auto& v) {
   auto& [a, b, c, d, e] = v;
   return std::tie(a, b, c, d, e);
 }
+auto of(Maybe<Digest> auto& v) {
+  auto& [a, b] = v;
+  return std::tie(a, b);
+}
 auto of(Maybe<WeightField> auto& v) {
-  auto& [a, b, c, d] = v;
-  return std::tie(a, b, c, d);
+  auto& [a, b, c, d, e, f] = v;
+  return std::tie(a, b, c, d, e, f);
+}
+auto of(Maybe<DegreeValidity> auto& v) {
+  auto& [a, b, c, d, e, f] = v;
+  return std::tie(a, b, c, d, e, f);
+}
+auto of(Maybe<DegreeErrors> auto& v) {
+  auto& [a, b, c, d, e] = v;
+  return std::tie(a, b, c, d, e);
+}
+auto of(Maybe<DegreeModel> auto& v) {
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q] = v;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q);
 }
 auto of(Maybe<Embedding> auto& v) {
   auto& [a, b, c, d] = v;
