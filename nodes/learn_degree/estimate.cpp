@@ -56,8 +56,8 @@ int rounded(double pieces, double least) {
 DegreeEstimate estimateDegree(const DegreeModel& model, const WeightField& weights,
                               const Embedding& embedding, Deviation deviation) {
   const bool isProcess = model.method == DegreeMethod::Process;
-  if (isProcess && wholeEnergy(weights.weight, weights.volume, embedding) < model.validFor.gamma) return {};
   const WeightPoint point = pointOf(model, weights.weight, weights.volume, embedding);
+  if (isProcess && !(point.logWhole >= 0)) return {};  // below γ as it is
   const Eigen::VectorXd distance2 = (model.points.colwise() - point.z).colwise().squaredNorm().transpose();
   DegreeEstimate estimate;
   estimate.distance = std::numeric_limits<double>::infinity();

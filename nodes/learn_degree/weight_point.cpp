@@ -64,11 +64,13 @@ Eigen::VectorXd dividedWeights(const std::vector<double>& weight, double scale) 
 WeightPoint pointOf(const DegreeModel& model, const std::vector<double>& weight,
                     const std::vector<double>& volume, const Embedding& embedding) {
   const Eigen::Index features = model.featureScale.rows(), components = model.basis.rows();
-  WeightPoint point{Eigen::VectorXd(features + components), 0};
-  if (features > 0)
-    point.z.head(features) =
-        (logFeatures(weight, volume, embedding, model.validFor.gamma) - model.featureScale.col(0))
-            .cwiseProduct(model.featureScale.col(1));
+  WeightPoint point;
+  point.z.resize(features + components);
+  if (features > 0) {
+    const auto logs = logFeatures(weight, volume, embedding, model.validFor.gamma);
+    point.logWhole = logs[0];
+    point.z.head(features) = (logs - model.featureScale.col(0)).cwiseProduct(model.featureScale.col(1));
+  }
   if (components == 0) return point;
   const auto mean =
       Eigen::Map<const Eigen::VectorXd>(model.mean.data(), static_cast<Eigen::Index>(model.mean.size()));

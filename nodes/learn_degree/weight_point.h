@@ -26,6 +26,7 @@ Eigen::VectorXd dividedWeights(const std::vector<double>& weight, double scale);
 
 struct WeightPoint {
   Eigen::VectorXd z;
+  double logWhole = 0;  ///< log(E_1 / γ), where the model has features; NaN where nothing weighs
   double residual =
       0;  ///< what of the weights lies outside of the basis, in units of distances between points
 };
