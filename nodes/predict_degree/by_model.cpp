@@ -44,6 +44,10 @@ Result<Sites> predictByModel(const DegreeModel& model, const WeightField& weight
     SHERD_CHECK(checkValidity(model, validityOf(weights, embedding, params.gamma)));
     grown.degree = foretold(estimateDegree(model, weights, *embedding, Deviation::Known), params, exec);
   }
+  // Pins count among the pieces of a body that breaks, and play no part in one that doesn't.
+  if (params.degree == 0 && grown.degree == 1) pinned = nullptr;
+  if (params.degree == 0 && grown.degree > 1 && pinned != nullptr)
+    grown.degree = std::max(grown.degree, static_cast<int>(pinned->pinned));
   return predictDegree(weights, *embedding, pinned, grown, exec);
 }
 
