@@ -42,7 +42,7 @@ Output outputOf(const DegreeModel& model, const Eigen::VectorXd& z, const Eigen:
   };
   for (Eigen::Index k = 0; k < phi.size(); ++k)
     phi[k] += trend(model.points.col(model.centres[static_cast<std::size_t>(k)]));
-  const double unexplained = 1 + trend(z) - phi.dot(model.inverse * phi);
+  const double unexplained = 1 + trend(z) - phi.dot(model.inverse.selfadjointView<Eigen::Lower>() * phi);
   out.deviation = std::sqrt(model.variance * std::max(0.0, unexplained));
   return out;
 }

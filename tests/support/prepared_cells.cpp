@@ -26,10 +26,14 @@ Result<std::shared_ptr<const Embedding>> embeddingOf(const std::shared_ptr<const
   return std::make_shared<const Embedding>(std::move(embedding));
 }
 
+/// Raised with the implementation of any node that the cells come from, so that what is kept is made anew.
+constexpr int kImplementation = 2;
+
 Result<PreparedCells> prepare(const std::shared_ptr<const TriMesh>& surface, const std::string& key,
                               const PrepareParams& params, FileStore& store) {
   PreparedCells made;
-  const std::string name = fmt::format("{}-{}{}", key, params.tets, params.euclidean ? "-euclidean" : "");
+  const std::string name =
+      fmt::format("{}-{}-{}{}", key, kImplementation, params.tets, params.euclidean ? "-euclidean" : "");
   made.embedding = store.find<Embedding>(name);
   if (!made.embedding) {
     SHERD_ASSIGN(made.embedding, embeddingOf(surface, params));
