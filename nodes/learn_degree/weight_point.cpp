@@ -42,9 +42,11 @@ Eigen::Matrix<double, kFeatures, 1> logFeatures(const std::vector<double>& weigh
   const double second =
       (embedding.coordinates.colwise() - c).colwise().squaredNorm().dot(w.matrix().transpose());
   const double first2 = (embedding.coordinates * w.matrix() - c).squaredNorm();
-  const Eigen::ArrayXd logDensity = w.max(kNothing).log() - v.max(kNothing).log();
-  const double threeFifths = (v * (0.6 * logDensity).exp()).sum();
-  const double third = (v * (logDensity / 3).exp()).sum();
+  // One power to make both of.
+  const Eigen::ArrayXd fifteenth = ((w.max(kNothing) / v.max(kNothing)).log() / 15).exp();
+  const Eigen::ArrayXd toTheFourth = fifteenth.square().square();
+  const double threeFifths = (v * fifteenth * toTheFourth.square()).sum();
+  const double third = (v * fifteenth * toTheFourth).sum();
   const double size2 = embedding.diameter * embedding.diameter;
   const double volume2 = std::pow(totalVolume, 2.0 / 3), least = kLeastShare * size2;
   Eigen::Matrix<double, kFeatures, 1> out;
