@@ -2,6 +2,7 @@
 // installs it; where it is missing the test fails.
 #include <gtest/gtest.h>
 
+#include "blender/blender_process.h"
 #include "support/program.h"
 
 namespace sherd {
@@ -13,19 +14,9 @@ void expectThatBlenderOpens(const std::string& reading) {
   const ProgramRun run = runProgram("run '" SHERD_SOURCE_DIR "/tests/blender/fracture.json' --var out='" +
                                     scratch.file("out") + "'" + reading);
   ASSERT_EQ(run.exitCode, 0) << run.output;
-  const std::string command =
-      "HOME='" + scratch.file("home") +
-      "' blender --background --factory-startup --python-exit-code 1 --python '" SHERD_SOURCE_DIR
-      "/tests/blender/pieces_in_blender.py' -- '" SHERD_SOURCE_DIR "/assets/mushroom.obj' '" +
-      scratch.file("out") + "' 2>&1";
-  FILE* pipe = popen(command.c_str(), "r");
-  ASSERT_NE(pipe, nullptr);
-  std::string said;
-  char buffer[4096];
-  while (const std::size_t n = fread(buffer, 1, sizeof buffer, pipe)) said.append(buffer, n);
-  const int status = pclose(pipe);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0)
-      << said << "\n(Blender is installed by tests/run --all.)";
+  const std::string said =
+      blenderSays(SHERD_SOURCE_DIR "/tests/blender/pieces_in_blender.py",
+                  {SHERD_SOURCE_DIR "/assets/mushroom.obj", scratch.file("out")}, scratch.file("home"));
   EXPECT_NE(said.find(" 0 faults"), std::string::npos) << said;
 }
 

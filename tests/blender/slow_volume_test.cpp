@@ -1,6 +1,7 @@
 // Painted fields in Blender's volume import: Debian's, headless, driven by volume_in_blender.py.
 #include <gtest/gtest.h>
 
+#include "blender/blender_process.h"
 #include "support/program.h"
 
 namespace sherd {
@@ -26,19 +27,8 @@ TEST(SlowBlenderVolume, OpensOurGridsOfFloatAndHalf) {
     const ProgramRun run =
         runProgram("run '" + scratch.file("paint.json") + "' --set file.precision=" + precision);
     ASSERT_EQ(run.exitCode, 0) << run.output;
-    const std::string command =
-        "HOME='" + scratch.file("home") +
-        "' blender --background --factory-startup --python-exit-code 1 --python '" SHERD_SOURCE_DIR
-        "/tests/blender/volume_in_blender.py' -- '" +
-        scratch.file("fields.vdb") + "' 2>&1";
-    FILE* pipe = popen(command.c_str(), "r");
-    ASSERT_NE(pipe, nullptr);
-    std::string said;
-    char buffer[4096];
-    while (const std::size_t n = fread(buffer, 1, sizeof buffer, pipe)) said.append(buffer, n);
-    const int status = pclose(pipe);
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0)
-        << said << "\n(Blender is installed by tests/run --all.)";
+    const std::string said = blenderSays(SHERD_SOURCE_DIR "/tests/blender/volume_in_blender.py",
+                                         {scratch.file("fields.vdb")}, scratch.file("home"));
     EXPECT_NE(said.find("0 faults"), std::string::npos) << precision << said;
   }
 }

@@ -37,10 +37,8 @@ int indexOf(const ReportData& data, const std::string& name) {
   return static_cast<int>(found - data.nodes.begin());
 }
 
-}  // namespace
-
-ReportData vaseReport(bool failed) {
-  const std::vector<Row> rows{
+std::vector<Row> vaseRows(bool failed) {
+  return {
       {"mesh", "LoadMesh", "hit", "", 0, {}, {"mesh"}},
       {"tets", "Tetrahedralize", "hit", "", 0, {"mesh"}, {"tets"}},
       {"embed", "Embed", "hit", "", 0, {"tets"}, {"embedding"}},
@@ -78,11 +76,9 @@ ReportData vaseReport(bool failed) {
        {"pictures"},
        {"file", "picture"}},
   };
-  ReportData data;
-  data.title = "first_fracture.json";
-  data.command = "sherd run graphs/first_fracture.json --set hit.young=3e6 --report out.html";
-  data.ok = !failed;
-  data.ms = 5123;
+}
+
+void addNodes(ReportData& data, const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     const bool hasFrames = std::string(row.name) == "picture" || std::string(row.name) == "crack";
     for (int frame = 1001; frame <= (hasFrames ? 1004 : 1001); ++frame) {
@@ -94,13 +90,9 @@ ReportData vaseReport(bool failed) {
           {"file", "out/" + std::to_string(frame) + ".png", "", "", "the file to write", false, false});
     }
   }
-  ReportNode& cells = data.nodes[static_cast<std::size_t>(indexOf(data, "cells"))];
-  cells.messages = {"12 sites, E_D = 1.9e-3 J·m²", "warning: 2 cells hold one node only"};
-  if (failed)
-    data.nodes[static_cast<std::size_t>(indexOf(data, "pieces"))].error =
-        "graphs/first_fracture.json:26:5: pieces.cells: the cells have no tetrahedra; wire CVD's `cells`";
-  else
-    data.nodes[static_cast<std::size_t>(indexOf(data, "sheet"))].written = {"/shots/vase/out/sheet.png"};
+}
+
+void addWires(ReportData& data) {
   const auto wire = [&](const char* from, const char* output, const char* to, const char* input) {
     for (std::size_t n = 0; n < data.nodes.size(); ++n)
       for (std::size_t m = 0; m < data.nodes.size(); ++m)
@@ -124,6 +116,25 @@ ReportData vaseReport(bool failed) {
   wire("pieces", "pieces", "picture", "pieces");
   wire("hit", "energy", "picture", "energy");
   wire("picture", "picture", "sheet", "pictures");
+}
+
+}  // namespace
+
+ReportData vaseReport(bool failed) {
+  ReportData data;
+  data.title = "first_fracture.json";
+  data.command = "sherd run graphs/first_fracture.json --set hit.young=3e6 --report out.html";
+  data.ok = !failed;
+  data.ms = 5123;
+  addNodes(data, vaseRows(failed));
+  ReportNode& cells = data.nodes[static_cast<std::size_t>(indexOf(data, "cells"))];
+  cells.messages = {"12 sites, E_D = 1.9e-3 J·m²", "warning: 2 cells hold one node only"};
+  if (failed)
+    data.nodes[static_cast<std::size_t>(indexOf(data, "pieces"))].error =
+        "graphs/first_fracture.json:26:5: pieces.cells: the cells have no tetrahedra; wire CVD's `cells`";
+  else
+    data.nodes[static_cast<std::size_t>(indexOf(data, "sheet"))].written = {"/shots/vase/out/sheet.png"};
+  addWires(data);
   return data;
 }
 
