@@ -216,7 +216,9 @@ void CellParts::sumUp(std::span<const unsigned char> isCut) {
 }
 
 void CellParts::sumTriangles(std::size_t part) {
-  forTriangles(part, [&](const Triangle& t) { addTo(sums_[part], t); });
+  SolidSums sums;
+  forTriangles(part, [&](const Triangle& t) { addTo(sums, t); });
+  sums_[part] = sums;
 }
 
 void CellParts::sumSheet(std::size_t back) {

@@ -32,6 +32,7 @@ class VertexNumbers {
     }
     return slots_[slot];
   }
+  std::size_t size() const { return names_.size(); }
   std::vector<VertexName> take() { return std::move(names_); }
 
  private:
@@ -154,18 +155,33 @@ bool liesOutside(const TetMesh& tets, std::size_t t) {
          tets.insideFraction[t] < 0.5;
 }
 
-std::vector<BlockPolygons> polygonsInBlocks(const TetMesh& tets, const SiteValues& values, const Exec& exec) {
+/// What a block's tetrahedra share is named once, so that little is left to be numbered for all blocks.
+struct Block {
+  BlockPolygons found;
+  std::vector<VertexName> names;  ///< each once
+  std::vector<Index> nameOf;      ///< per corner
+
+  void nameCorners() {
+    VertexNumbers numbers(found.corners.size());
+    nameOf.reserve(found.corners.size());
+    for (const VertexName& name : found.corners) nameOf.push_back(numbers.numberOf(name));
+    names = numbers.take();
+  }
+};
+
+std::vector<Block> polygonsInBlocks(const TetMesh& tets, const SiteValues& values, const Exec& exec) {
   const std::size_t n = tets.tets.size();
-  std::vector<BlockPolygons> blocks((n + kBlock - 1) / kBlock);
+  std::vector<Block> blocks((n + kBlock - 1) / kBlock);
   parallelFor(exec, n, kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<Index> candidates;
     TetEnvelope envelope(tets, values);
+    Block& block = blocks[begin / kBlock];
     for (std::size_t t = begin; t < end; ++t) {
       if (liesOutside(tets, t)) continue;
       values.candidates(tets.tets[t], candidates);
-      if (candidates.size() > 1)
-        envelope.addPolygons(static_cast<Index>(t), candidates, blocks[begin / kBlock]);
+      if (candidates.size() > 1) envelope.addPolygons(static_cast<Index>(t), candidates, block.found);
     }
+    block.nameCorners();
   });
   return blocks;
 }
@@ -173,27 +189,32 @@ std::vector<BlockPolygons> polygonsInBlocks(const TetMesh& tets, const SiteValue
 }  // namespace
 
 ExactSheets exactSheets(const TetMesh& tets, const SiteValues& values, const Exec& exec) {
-  const std::vector<BlockPolygons> blocks = polygonsInBlocks(tets, values, exec);
+  const std::vector<Block> blocks = polygonsInBlocks(tets, values, exec);
   ExactSheets result;
   Sheets& sheets = result.sheets;
-  std::size_t corners = 0;
-  for (const BlockPolygons& block : blocks) corners += block.corners.size();
-  VertexNumbers numbers(corners);
-  for (const BlockPolygons& block : blocks) {
+  std::size_t corners = 0, named = 0;
+  for (const Block& block : blocks) corners += block.nameOf.size(), named += block.names.size();
+  VertexNumbers numbers(named);
+  sheets.corners.reserve(corners);
+  result.lines.reserve(corners);
+  std::vector<Index> numberOf;
+  for (const auto& [found, names, nameOf] : blocks) {
     Index first = static_cast<Index>(sheets.corners.size());
-    for (const BlockPolygons::Polygon& p : block.polygons) {
+    for (const BlockPolygons::Polygon& p : found.polygons) {
       sheets.polygons.push_back({first, p.count, values.site(p.front), values.site(p.back), p.tet});
       result.ranks.push_back({p.back, p.front});
       first += p.count;
     }
-    for (std::size_t c = 0; c < block.corners.size(); ++c) {
-      const Index vertex = numbers.numberOf(block.corners[c]);
+    numberOf.clear();
+    for (const VertexName& name : names) numberOf.push_back(numbers.numberOf(name));
+    sheets.onCage.resize(numbers.size(), 0);
+    for (std::size_t c = 0; c < nameOf.size(); ++c) {
+      const Index vertex = numberOf[at(nameOf[c])];
       sheets.corners.push_back(vertex);
-      if (at(vertex) == sheets.onCage.size()) sheets.onCage.push_back(0);
-      sheets.onCage[at(vertex)] |= block.onCage[c];
+      sheets.onCage[at(vertex)] |= found.onCage[c];
     }
-    result.lines.insert(result.lines.end(), block.lines.begin(), block.lines.end());
-    sheets.cutTets += block.cutTets;
+    result.lines.insert(result.lines.end(), found.lines.begin(), found.lines.end());
+    sheets.cutTets += found.cutTets;
   }
   const std::vector<VertexName> names = numbers.take();
   sheets.vertices.resize(names.size());

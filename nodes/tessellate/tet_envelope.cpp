@@ -13,6 +13,7 @@ class TetEnvelope::Impl {
 
   void addPolygons(Index tet, std::span<const Index> candidates, BlockPolygons& out) {
     begin(tet);
+    reserve(candidates.size() + 4);  // each clip adds at most one corner
     const std::size_t before = out.polygons.size();
     for (std::size_t a = 0; a < candidates.size(); ++a)
       for (std::size_t b = a + 1; b < candidates.size(); ++b) {
@@ -44,6 +45,13 @@ class TetEnvelope::Impl {
     std::array<double, 4> weight{};
     double error = 0;
   };
+
+  void reserve(std::size_t corners) {
+    if (lines_.size() >= corners) return;
+    for (auto* v : {&lines_, &clippedLines_}) v->resize(corners);
+    for (auto* v : {&corners_, &clippedCorners_}) v->resize(corners);
+    valueAt_.resize(corners), errorAt_.resize(corners), signs_.resize(corners);
+  }
 
   void begin(Index tet) {
     tet_ = tet;
@@ -79,15 +87,19 @@ class TetEnvelope::Impl {
     if (inversions % 2 == 1) low == 1 ? std::swap(order[2], order[3]) : std::swap(order[0], order[1]);
     const auto [a, b, c, d] = order;
     if (low == 1)  // corners on ab, ac, ad
-      lines_ = {d, b, c};
+      takeLines({d, b, c});
     else if (low == 3)  // bd, cd, ad
-      lines_ = {a, b, c};
+      takeLines({a, b, c});
     else  // ad, bd, bc, ac
-      lines_ = {c, a, d, b};
-    const std::size_t n = lines_.size();
-    corners_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) placeOnEdge(lines_[i == 0 ? n - 1 : i - 1], lines_[i], corners_[i]);
+      takeLines({c, a, d, b});
     return true;
+  }
+
+  void takeLines(std::initializer_list<Line> lines) {
+    count_ = lines.size();
+    std::copy(lines.begin(), lines.end(), lines_.begin());
+    for (std::size_t i = 0; i < count_; ++i)
+      placeOnEdge(lines_[i == 0 ? count_ - 1 : i - 1], lines_[i], corners_[i]);
   }
 
   /// Where the plane meets the edge that two faces share.
@@ -203,10 +215,7 @@ class TetEnvelope::Impl {
       difference[i] = g_[i][third] - g_[i][back_];
       sum += std::abs(difference[i]);
     }
-    const std::size_t n = lines_.size();
-    valueAt_.resize(n);
-    errorAt_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < count_; ++i) {
       const Corner& c = corners_[i];
       double value = 0, size = 0;
       for (std::size_t k = 0; k < 4; ++k) {
@@ -221,52 +230,54 @@ class TetEnvelope::Impl {
   /// Keeps where g_third ≥ g_back; false where nothing is left.
   bool clipBy(Index third) {
     evaluate(third);
-    const std::size_t n = lines_.size();
-    signs_.resize(n);
+    const std::size_t n = count_;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < n; ++i) {
       if (std::abs(valueAt_[i]) > errorAt_[i])
         signs_[i] = valueAt_[i] > 0 ? 1 : -1;
       else
-        signs_[i] = signAtCorner(lines_[(i + n - 1) % n], lines_[i], third);
+        signs_[i] = signAtCorner(lines_[before(i)], lines_[i], third);
       kept += signs_[i] > 0;
     }
     if (kept == n) return true;
     if (kept == 0) return false;
     // The kept corners follow one another; begin with the first of them.
     std::size_t first = 0;
-    while (!(signs_[first] > 0 && signs_[(first + n - 1) % n] < 0)) ++first;
-    const std::size_t last = (first + kept - 1) % n, before = (first + n - 1) % n, after = (last + 1) % n;
+    while (!(signs_[first] > 0 && signs_[before(first)] < 0)) ++first;
+    std::size_t last = first + kept - 1;
+    if (last >= n) last -= n;
+    const std::size_t outBefore = before(first), outAfter = last + 1 == n ? 0 : last + 1;
     const auto place = [&](std::size_t in, std::size_t out, Corner& corner) {
       placeBetween(corners_[in], corners_[out], valueAt_[in], valueAt_[out],
                    std::max(errorAt_[in], errorAt_[out]), corner);
     };
     // The new line leads from where the kept corners end to where they begin.
-    clippedLines_.resize(kept + 2), clippedCorners_.resize(kept + 2);
-    clippedLines_.front() = lines_[before];
-    place(first, before, clippedCorners_.front());
+    clippedLines_.front() = lines_[outBefore];
+    place(first, outBefore, clippedCorners_.front());
     for (std::size_t i = 0, from = first; i < kept; ++i, from = from + 1 == n ? 0 : from + 1) {
       clippedLines_[i + 1] = lines_[from];
       clippedCorners_[i + 1] = corners_[from];
     }
-    clippedLines_.back() = third + 4;
-    place(last, after, clippedCorners_.back());
+    clippedLines_[kept + 1] = third + 4;
+    place(last, outAfter, clippedCorners_[kept + 1]);
+    count_ = kept + 2;
     lines_.swap(clippedLines_);
     corners_.swap(clippedCorners_);
     return true;
   }
 
   void emit(BlockPolygons& out) const {
-    const std::size_t n = lines_.size();
-    out.polygons.push_back({tet_, back_, front_, static_cast<Index>(n)});
-    for (std::size_t i = 0; i < n; ++i) {
-      const Line before = lines_[(i + n - 1) % n], after = lines_[i];
-      out.corners.push_back(nameOf(before, after));
-      out.lines.push_back({isFace(after) ? after : -1, isFace(after) ? -1 : after - 4});
+    out.polygons.push_back({tet_, back_, front_, static_cast<Index>(count_)});
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Line into = lines_[before(i)], from = lines_[i];
+      out.corners.push_back(nameOf(into, from));
+      out.lines.push_back({isFace(from) ? from : -1, isFace(from) ? -1 : from - 4});
       const auto isOutside = [&](Line l) { return isFace(l) && atBoundary_[static_cast<std::size_t>(l)]; };
-      out.onCage.push_back(isOutside(before) || isOutside(after));
+      out.onCage.push_back(isOutside(into) || isOutside(from));
     }
   }
+
+  std::size_t before(std::size_t corner) const { return corner == 0 ? count_ - 1 : corner - 1; }
 
   VertexName nameOf(Line one, Line other) const {
     VertexName name;
@@ -293,6 +304,8 @@ class TetEnvelope::Impl {
   std::array<const double*, 4> g_{};
   std::array<bool, 4> atBoundary_{};
   Index back_ = -1, front_ = -1;
+  // The polygon has `count_` corners; the vectors are longer, so that they need not grow in between.
+  std::size_t count_ = 0;
   std::vector<Line> lines_, clippedLines_;
   std::vector<Corner> corners_, clippedCorners_;
   std::vector<double> valueAt_, errorAt_;
