@@ -153,12 +153,32 @@ bool enclosesTopology(const std::vector<std::pair<bool, int>>& got,
          gotBodies <= bodies && gotEuler <= euler && gotEuler >= euler - 2 * most;
 }
 
-std::string describeTopology(const std::vector<std::pair<bool, int>>& topology) {
+namespace {
+
+struct Counts {
   int components = 0, voids = 0, handles = 0;
+};
+
+Counts countsOf(const std::vector<std::pair<bool, int>>& topology) {
+  Counts c;
   for (const auto& [isVoid, euler] : topology) {
-    ++(isVoid ? voids : components);
-    handles += (2 - euler) / 2;
+    ++(isVoid ? c.voids : c.components);
+    c.handles += (2 - euler) / 2;
   }
+  return c;
+}
+
+}  // namespace
+
+int topologyDifference(const std::vector<std::pair<bool, int>>& got,
+                       const std::vector<std::pair<bool, int>>& wanted) {
+  const Counts a = countsOf(got), b = countsOf(wanted);
+  return std::abs(a.components - b.components) + std::abs(a.voids - b.voids) +
+         std::abs(a.handles - b.handles);
+}
+
+std::string describeTopology(const std::vector<std::pair<bool, int>>& topology) {
+  const auto [components, voids, handles] = countsOf(topology);
   const auto count = [](int n, const char* one, const char* many) {
     return std::to_string(n) + " " + (n == 1 ? one : many);
   };

@@ -32,6 +32,9 @@ std::size_t countContacts(std::span<const Vec3> positions);
 /// may each of them have joined two components or closed a handle.
 bool enclosesTopology(const std::vector<std::pair<bool, int>>& got,
                       const std::vector<std::pair<bool, int>>& wanted, std::size_t contacts);
+/// How many shells and handles there are too many or too few.
+int topologyDifference(const std::vector<std::pair<bool, int>>& got,
+                       const std::vector<std::pair<bool, int>>& wanted);
 /// "2 components, 1 void, 3 handles" for messages.
 std::string describeTopology(const std::vector<std::pair<bool, int>>& topology);
 /// "(x, y, z)" with enough digits to find the place.

@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 
-#include "geometry/solid.h"
 #include "geometry/surface_links.h"
 #include "tetrahedralize/cage_field.h"
 #include "tetrahedralize/enclosure.h"
 #include "tetrahedralize/inside_share.h"
+#include "tetrahedralize/unit_surface.h"
 
 namespace sherd {
 namespace {
@@ -20,46 +19,11 @@ constexpr double kTetShape = 0.095;  ///< volume of a typical tetrahedron in cub
 constexpr double kCountTolerance = 0.1;  ///< of the number of tetrahedra, that the search ends at
 constexpr int kSearchRuns = 4;           ///< runs of Mesh_3 for the number of tetrahedra
 constexpr int kTries = 5;                ///< further ones for enclosure, topology and gaps
+constexpr std::size_t kPatience = 3;     ///< of these, that may fail to halve what topology is off by
 constexpr double kMoreTets = 4;          ///< times as many where none of these gave a cage
 constexpr double kPerturbBound = 12, kExudeBound = 14;  ///< degrees
 constexpr std::size_t kMostTets = 20;          ///< times the number aimed at, that gaps may ask for …
 constexpr std::size_t kAlwaysAllowed = 40000;  ///< … or this many
-
-UnitSurface toUnit(const TriMesh& mesh) {
-  UnitSurface unit;
-  const Box box = boxOf(mesh.positions);
-  unit.centre = box.centre();
-  unit.size = box.diagonal();
-  constexpr double kGrid = 1 << 24;
-  for (const Vec3& p : mesh.positions)
-    unit.positions.push_back(((p - unit.centre) / unit.size * kGrid).array().round().matrix() / kGrid);
-  unit.triangles = mesh.triangles;
-  unit.volume = solidVolume(unit.positions, unit.triangles);
-  unit.area = 0;
-  for (const Triangle& t : unit.triangles) {
-    const Vec3& a = unit.positions[at(t[0])];
-    unit.area += 0.5 * (unit.positions[at(t[1])] - a).cross(unit.positions[at(t[2])] - a).norm();
-  }
-  return unit;
-}
-
-Result<UnitSurface> checkedUnitSurface(const TriMesh& mesh) {
-  if (mesh.triangles.empty()) return failure("the surface has no triangles", "give a closed surface", "mesh");
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-    if (!mesh.positions[v].allFinite())
-      return failure(fmt::format("vertex {} is not a finite number", v + 1), "repair the file", "mesh");
-  SHERD_ASSIGN(std::vector<Shell> shells, splitShells(mesh.positions, mesh.triangles));
-  const double volume = solidVolume(mesh.positions, mesh.triangles);
-  const double size = boxOf(mesh.positions).diagonal();
-  if (std::abs(volume) <= 1e-12 * size * size * size)
-    return failure("the surface encloses no volume", "give a solid with some thickness", "mesh");
-  if (volume < 0)
-    return failure("the surface is inside out: its volume is negative", "turn its triangles around", "mesh");
-  UnitSurface unit = toUnit(mesh);
-  for (Shell& shell : shells) shell.volume /= size * size * size;
-  unit.shells = std::move(shells);
-  return unit;
-}
 
 /// The edge length with which `tets` fill the volume of the cage.
 double edgeForCount(const UnitSurface& surface, double tets) {
@@ -80,51 +44,6 @@ double meanEdge(const Tetrahedra& mesh) {
   return sum / static_cast<double>(edges.size());
 }
 
-/// Position along a Morton curve through the unit box.
-std::uint64_t mortonCode(const Vec3& p) {
-  std::uint64_t code = 0;
-  Eigen::Array<std::uint64_t, 3, 1> cell;
-  for (Eigen::Index i = 0; i < 3; ++i)
-    cell[i] = static_cast<std::uint64_t>(std::clamp((p[i] + 1.0) * 0.5, 0.0, 1.0) * ((1 << 20) - 1));
-  for (unsigned bit = 20; bit-- > 0;)
-    for (Eigen::Index i = 0; i < 3; ++i) code = code << 1 | (cell[i] >> bit & 1);
-  return code;
-}
-
-template <class Code>
-std::vector<Index> orderBy(std::size_t n, Code&& code) {
-  std::vector<std::pair<std::uint64_t, Index>> keys(n);
-  for (std::size_t i = 0; i < n; ++i) keys[i] = {code(i), static_cast<Index>(i)};
-  std::sort(keys.begin(), keys.end());
-  std::vector<Index> order(n);
-  for (std::size_t i = 0; i < n; ++i) order[i] = keys[i].second;
-  return order;
-}
-
-/// The mesh in metres, nodes and tetrahedra along a Morton curve.
-TetMesh toMetres(const Tetrahedra& mesh, const UnitSurface& surface) {
-  TetMesh out;
-  const std::vector<Index> nodeOrder =
-      orderBy(mesh.nodes.size(), [&](std::size_t n) { return mortonCode(mesh.nodes[n]); });
-  std::vector<Index> newNumber(mesh.nodes.size());
-  for (std::size_t n = 0; n < nodeOrder.size(); ++n) {
-    newNumber[at(nodeOrder[n])] = static_cast<Index>(n);
-    out.nodes.push_back(surface.toMetres(mesh.nodes[at(nodeOrder[n])]));
-  }
-  const std::vector<Index> tetOrder = orderBy(mesh.tets.size(), [&](std::size_t t) {
-    Vec3 sum = Vec3::Zero();
-    for (const Index n : mesh.tets[t]) sum += mesh.nodes[at(n)];
-    return mortonCode(0.25 * sum);
-  });
-  for (const Index t : tetOrder) {
-    Tetra tet = mesh.tets[at(t)];
-    for (Index& n : tet) n = newNumber[at(n)];
-    out.tets.push_back(tet);
-  }
-  connectTets(out);
-  return out;
-}
-
 class CageBuilder {
  public:
   CageBuilder(std::shared_ptr<const TriMesh> mesh, UnitSurface surface, const TetrahedralizeParams& params,
@@ -139,7 +58,7 @@ class CageBuilder {
 
   Result<TetMesh> build() {
     SHERD_ASSIGN(std::optional<TetMesh> cage, attempt());
-    if (!cage) {
+    if (!cage && !bridgesAreNarrow_) {
       // What is thin or near to another part of the surface at this resolution is less so at a higher one.
       exec_.info("meshing again with more tetrahedra: " + problem_->what);
       params_.tets = static_cast<int>(std::min(kMoreTets * params_.tets, kMostAskedFor));
@@ -153,6 +72,13 @@ class CageBuilder {
   }
 
  private:
+  /// Is topology off by much, and by more than half of what it was off by `kPatience` tries before?
+  bool isHopeless() const {
+    constexpr int few = 3;  // another try may mend these
+    const std::size_t n = offBy_.size();
+    return n > kPatience && offBy_[n - 1] > std::max(few, offBy_[n - 1 - kPatience] / 2);
+  }
+
   /// A cage as promised, or none, and problem_ says why not.
   Result<std::optional<TetMesh>> attempt() {
     nominal_ =
@@ -165,6 +91,7 @@ class CageBuilder {
                      params_.edgeLength > 0 ? "edge_length" : "tets");
     nominal_ = std::min(nominal_, 0.25);  // at least a few edges across the object
     exec_.progress(0.02);
+    offBy_.clear();
     SHERD_CHECK(lookForGaps());
     SHERD_ASSIGN(VolumeMesh mesh, searchEdgeLength());
     const auto hasTopology = [this](const Tetrahedra& tetrahedra) {
@@ -179,6 +106,7 @@ class CageBuilder {
       SHERD_ASSIGN(bool good, verify(cage));
       if (exec_.cancelled()) return cancelledError();
       if (good) return std::optional(std::move(cage));
+      if (isHopeless()) break;
       exec_.info("meshing again, more finely: " + problem_->what);
       SHERD_ASSIGN(mesh, meshOnce());
     }
@@ -322,19 +250,15 @@ class CageBuilder {
   }
 
   bool wantTopology(const TetMesh& cage, const std::vector<std::pair<bool, int>>& got) {
-    std::string where;
-    const SurfaceTree boundary(cage.nodes, cage.boundary);
-    const Gap* narrowest = nullptr;
-    for (const Gap& gap : gaps_)
-      if ((narrowest == nullptr || gap.width < narrowest->width) &&
-          boundary.contains(surface_.toMetres(gap.middle())))
-        narrowest = &gap;
-    if (narrowest != nullptr) where = "; " + gapText(*narrowest) + " is closed";
+    offBy_.push_back(topologyDifference(got, wanted_));
+    const bool bridged = refineBridges(cage);
     problem_ =
         failure(fmt::format("the cage has {} where the surface has {}{}", describeTopology(got),
-                            describeTopology(wanted_), where),
-                "widen or close narrow gaps and holes in the model, or ask for more tetrahedra", "mesh");
-    const bool bridged = refineBridges(cage);
+                            describeTopology(wanted_), closedGapText(cage)),
+                bridgesAreNarrow_ ? "widen or close narrow gaps and holes in the model"
+                                  : "widen or close narrow gaps and holes in the model, or ask for more "
+                                    "tetrahedra",
+                "mesh");
     if (bridged) return false;
     if (smallGapsToo_) sizes_.closeness *= 0.6;
     smallGapsToo_ = true;
@@ -342,17 +266,32 @@ class CageBuilder {
     return false;
   }
 
+  std::string closedGapText(const TetMesh& cage) const {
+    const SurfaceTree boundary(cage.nodes, cage.boundary);
+    const Gap* narrowest = nullptr;
+    for (const Gap& gap : gaps_)
+      if ((narrowest == nullptr || gap.width < narrowest->width) &&
+          boundary.contains(surface_.toMetres(gap.middle())))
+        narrowest = &gap;
+    return narrowest == nullptr ? "" : "; " + gapText(*narrowest) + " is closed";
+  }
+
   /// Asks for finer meshing where the cage lies clearly outside the level set, as where it spans a gap.
   bool refineBridges(const TetMesh& cage) {
-    const std::size_t before = sizes_.finer.size();
+    std::size_t bridges = 0, narrow = 0;
     for (const Tetra& t : cage.tets)
       for (const auto& e : kTetraEdge) {
         const Vec3 middle = 0.5 * (cage.nodes[at(t[static_cast<std::size_t>(e[0])])] +
                                    cage.nodes[at(t[static_cast<std::size_t>(e[1])])]);
         const Vec3 x = (middle - surface_.centre) / surface_.size;
-        if ((*field_)(x) > 0.5 * field_->offset(x)) addFiner(x, 0.6);
+        if (!((*field_)(x) > 0.5 * field_->offset(x))) continue;
+        ++bridges;
+        if (field_->edgeLength(x) < kNarrow * nominal_) ++narrow;
+        addFiner(x, 0.6);
       }
-    return sizes_.finer.size() > before;
+    // More tetrahedra make edges shorter where nothing but their number tells how long they are.
+    bridgesAreNarrow_ = 2 * narrow > bridges;
+    return bridges > 0;
   }
 
   Result<TetMesh> finish(TetMesh cage) {
@@ -368,7 +307,8 @@ class CageBuilder {
   }
 
   static constexpr double kMostAskedFor = 5e6;  ///< tetrahedra
-  static constexpr double kLargestEdge = 1.5;   ///< nominal edge lengths that the search may go up to
+  static constexpr double kNarrow = 0.25;      ///< nominal edge lengths that an edge in a gap is shorter than
+  static constexpr double kLargestEdge = 1.5;  ///< nominal edge lengths that the search may go up to
 
   std::shared_ptr<const TriMesh> mesh_;
   UnitSurface surface_;
@@ -384,6 +324,8 @@ class CageBuilder {
   std::shared_ptr<const LevelSet> levelSet_;
   std::unique_ptr<CageField> field_;
   std::optional<Error> problem_;
+  std::vector<int> offBy_;  ///< what topology was off by, each time that it was
+  bool bridgesAreNarrow_ = false;
 };
 
 }  // namespace

@@ -21,7 +21,8 @@
 //    boundary, every shell lies inside; the boundary is a 2-manifold with the surface's components, shells
 //    and Euler characteristics; the gaps are open. Where the surface comes through, boundary nodes are pushed
 //    outward; where that does not do, the place is meshed more finely and all is done again.
-//    Where all that gives no cage, everything is done once more with four times as many tetrahedra.
+//    Where all that gives no cage, everything is done once more with four times as many tetrahedra, unless it
+//    was gaps that made edges short: where topology stays off by much, the end comes early.
 //
 // Parts of the surface may touch in a point or along an edge, each with vertices of its own there (as
 // SelectPiece makes them): the cage joins them, so there its topology may be that of the joined parts.

@@ -31,6 +31,15 @@ TEST(TetrahedralizeTouching, AContactMayJoinBodiesOrMakeAHandleAndNothingElse) {
   EXPECT_FALSE(enclosesTopology(ball, hollow, 3));
 }
 
+TEST(TetrahedralizeTouching, TopologyIsOffByShellsAndHandles) {
+  const Topology ball{{false, 2}}, two{{false, 2}, {false, 2}}, rings{{false, -4}},
+      hollow{{false, 2}, {true, 0}};
+  EXPECT_EQ(topologyDifference(two, two), 0);
+  EXPECT_EQ(topologyDifference(ball, two), 1);
+  EXPECT_EQ(topologyDifference(rings, two), 4);   // a component too few, three handles too many
+  EXPECT_EQ(topologyDifference(two, hollow), 3);  // a component too many, no void, and not its handle
+}
+
 TEST(TetrahedralizeTouching, TwoBoxesThatMeetInAPointHaveOneCage) {
   expectGood(cageOf(joined(box(Vec3::Zero(), Vec3::Ones()), box(Vec3::Ones(), Vec3(2, 2, 2))), 300), 1, 2);
 }
