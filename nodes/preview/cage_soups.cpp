@@ -45,7 +45,7 @@ Polygon section(const Eigen::Vector4d& values, const Vec3& normal) {
 
 /// Calls show(tetrahedron, polygon) for all that can be seen of the tetrahedra.
 template <class Show>
-void forVisible(const TetMesh& mesh, const std::optional<CutPlane>& cut, const Show& show) {
+void forVisible(const TetMesh& mesh, const std::optional<SlicePlane>& cut, const Show& show) {
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     const Tetra& tet = mesh.tets[t];
     Eigen::Vector4d height = Eigen::Vector4d::Constant(-1);  // above the plane
@@ -96,7 +96,7 @@ class SoupBuilder {
 
 }  // namespace
 
-Soup cellsSoup(const Partition& cells, const std::optional<CutPlane>& cut, const PictureSpace& space) {
+Soup cellsSoup(const Partition& cells, const std::optional<SlicePlane>& cut, const PictureSpace& space) {
   const TetMesh& mesh = *cells.embedding->tets;
   const Eigen::MatrixXd& x = cells.embedding->coordinates;
   SoupBuilder builder(mesh, space);
@@ -134,7 +134,7 @@ std::vector<double> nodeEnergyDensity(const EnergyField& energy) {
   return density;
 }
 
-Soup energySoup(const EnergyField& energy, const EnergyScale& scale, const std::optional<CutPlane>& cut,
+Soup energySoup(const EnergyField& energy, const EnergyScale& scale, const std::optional<SlicePlane>& cut,
                 const PictureSpace& space) {
   const TetMesh& mesh = *energy.tets;
   const std::vector<double> density = nodeEnergyDensity(energy);

@@ -79,7 +79,7 @@ class PanelMaker {
     if (params.slice == Slice::None) return;
     const int axis = static_cast<int>(params.slice) - static_cast<int>(Slice::X);
     const Box box = boxOf(body_.positions);
-    cut_ = CutPlane{axis, box.low[axis] + params.sliceAt * (box.high[axis] - box.low[axis])};
+    cut_ = SlicePlane{axis, box.low[axis] + params.sliceAt * (box.high[axis] - box.low[axis])};
   }
 
   Result<std::vector<Panel>> make() {
@@ -136,7 +136,7 @@ class PanelMaker {
   const TriMesh& body_;
   PictureSpace space_;
   std::vector<Vec3> normals_;
-  std::optional<CutPlane> cut_;
+  std::optional<SlicePlane> cut_;
   std::vector<Panel> panels_;
 };
 
@@ -167,7 +167,7 @@ void annotate(Picture& picture, const PanelFrame& frame, const Panel& panel) {
   if (panel.ends && frame.height > 60 * dots) Legend::in(frame, dots).draw(picture, *panel.ends);
 }
 
-Picture toPicture(const Canvas& canvas) {
+Picture toPicture(const PixelBuffer& canvas) {
   Picture picture{canvas.width, canvas.height, {}};
   picture.rgb.reserve(3 * canvas.pixels.size());
   for (const Colour& pixel : canvas.pixels)
@@ -189,7 +189,7 @@ Result<Picture> renderPreview(const PreviewInput& in, const PreviewParams& param
   const float aspect = static_cast<float>(params.width / count) / static_cast<float>(params.height);
   const Camera camera = threeQuarterView(points, aspect, 0.84f);
 
-  Canvas canvas{params.width, params.height, {}};
+  PixelBuffer canvas{params.width, params.height, {}};
   canvas.pixels.resize(static_cast<std::size_t>(params.width) * static_cast<std::size_t>(params.height));
   const auto frameOf = [&](int p) {
     const int left = params.width * p / count, right = params.width * (p + 1) / count;

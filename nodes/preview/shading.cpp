@@ -107,8 +107,8 @@ class Painter {
 
 Colour backdrop(float v) { return (1 - v) * Colour(0.83f, 0.85f, 0.88f) + v * Colour(0.60f, 0.62f, 0.66f); }
 
-void drawPanel(const Scene& scene, const Camera& camera, const PanelFrame& frame, int samples, Canvas& canvas,
-               const Exec& exec) {
+void drawPanel(const Scene& scene, const Camera& camera, const PanelFrame& frame, int samples,
+               PixelBuffer& canvas, const Exec& exec) {
   constexpr int kTile = 16;
   const Painter painter(scene, camera);
   const Rng seeds(0x70697865, static_cast<std::uint64_t>(frame.left));

@@ -16,7 +16,7 @@ struct PanelFrame {
 };
 
 /// Linear pixels of the whole picture, rows from the top.
-struct Canvas {
+struct PixelBuffer {
   int width = 0, height = 0;
   std::vector<Colour> pixels;
   Colour& at(int x, int y) {
@@ -29,7 +29,7 @@ struct Canvas {
 Colour backdrop(float v);
 
 /// Draws `scene`, standing on a ground at its lowest point, into `frame` of `canvas`.
-void drawPanel(const Scene& scene, const Camera& camera, const PanelFrame& frame, int samples, Canvas& canvas,
-               const Exec& exec);
+void drawPanel(const Scene& scene, const Camera& camera, const PanelFrame& frame, int samples,
+               PixelBuffer& canvas, const Exec& exec);
 
 }  // namespace sherd

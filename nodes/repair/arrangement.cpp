@@ -51,7 +51,7 @@ class Cutter {
     for (const Vec3& p : positions) result_.points.emplace_back(p.x(), p.y(), p.z());
   }
 
-  Arrangement cut(std::span<const std::array<Index, 2>> pairs) {
+  CutSurface cut(std::span<const std::array<Index, 2>> pairs) {
     intersect(pairs);
     std::map<std::size_t, std::vector<Index>> groups;
     for (const auto& [t, list] : common_) groups[coplanar_->find(at(t))].push_back(t);
@@ -166,7 +166,7 @@ class Cutter {
 
   std::span<const Triangle> triangles_;
   const Exec& exec_;
-  Arrangement result_;
+  CutSurface result_;
   std::map<Index, std::vector<Common>> common_;
   std::map<Point3, Index, ByCoordinates> number_;
   std::unique_ptr<DisjointSets> coplanar_;
@@ -174,8 +174,8 @@ class Cutter {
 
 }  // namespace
 
-Arrangement arrange(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                    std::span<const std::array<Index, 2>> pairs, const Exec& exec) {
+CutSurface arrange(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                   std::span<const std::array<Index, 2>> pairs, const Exec& exec) {
   return Cutter(positions, triangles, exec).cut(pairs);
 }
 

@@ -13,7 +13,7 @@ namespace sherd {
 
 using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
 
-struct Arrangement {
+struct CutSurface {
   struct Face {
     Triangle corners;   ///< in points; as its source runs
     Index source = -1;  ///< the triangle of the surface that it is a part of
@@ -28,7 +28,7 @@ struct Arrangement {
 /// on each other get the same parts there. No zero-area triangles. When cancelled, the result means nothing.
 /// Cost: exact constructions for each pair and a constrained Delaunay triangulation (CGAL) for each cut
 /// triangle or group of such that overlap in a plane.
-Arrangement arrange(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                    std::span<const std::array<Index, 2>> pairs, const Exec& exec);
+CutSurface arrange(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                   std::span<const std::array<Index, 2>> pairs, const Exec& exec);
 
 }  // namespace sherd

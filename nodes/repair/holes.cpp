@@ -63,7 +63,7 @@ class Borders {
   }
   /// The third corner of the face that borders on the way from a to b.
   Index across(Index a, Index b) const { return across_.at({a, b}); }
-  const std::pair<Origin, Index>& beside(Index v) const { return beside_.at(v); }
+  const std::pair<CornerOrigin, Index>& beside(Index v) const { return beside_.at(v); }
 
  private:
   void leave(Index from, Index to) { leaving_[from].push_back(to); }
@@ -77,7 +77,7 @@ class Borders {
   std::map<Index, std::vector<Index>> leaving_;
   std::vector<Index> path_;  ///< walked, and not yet part of a loop
   std::map<std::array<Index, 2>, Index> across_;
-  std::map<Index, std::pair<Origin, Index>> beside_;
+  std::map<Index, std::pair<CornerOrigin, Index>> beside_;
 };
 
 /// Where no Delaunay triangulation holds a filling, CGAL takes time with the third power.

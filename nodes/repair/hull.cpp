@@ -26,7 +26,7 @@ struct Layer {
   std::vector<std::pair<Index, bool>> sources;  ///< and whether they run so; ascending
 };
 
-std::vector<Layer> layersOf(const Arrangement& arrangement) {
+std::vector<Layer> layersOf(const CutSurface& arrangement) {
   const std::size_t n = arrangement.faces.size();
   std::vector<std::pair<Triangle, std::size_t>> sorted(n);
   for (std::size_t f = 0; f < n; ++f) {
@@ -36,7 +36,7 @@ std::vector<Layer> layersOf(const Arrangement& arrangement) {
   std::sort(sorted.begin(), sorted.end());
   std::vector<Layer> layers;
   for (std::size_t k = 0; k < n; ++k) {
-    const Arrangement::Face& face = arrangement.faces[sorted[k].second];
+    const CutSurface::Face& face = arrangement.faces[sorted[k].second];
     if (k == 0 || sorted[k].first != sorted[k - 1].first) layers.push_back({face.corners, 0, {}});
     Layer& layer = layers.back();
     // The same way round where it runs through the first two corners in the same order.
@@ -56,7 +56,7 @@ std::vector<Layer> layersOf(const Arrangement& arrangement) {
 /// Counts how often the surface winds around points beside faces.
 class Winding {
  public:
-  Winding(const Patchwork& surface, const Arrangement& arrangement)
+  Winding(const Patchwork& surface, const CutSurface& arrangement)
       : surface_(surface), points_(arrangement.points), boxes_(surface.triangles.size()) {
     for (std::size_t t = 0; t < boxes_.size(); ++t)
       for (const Index v : surface.triangles[t]) boxes_[t].add(surface.positions[at(v)]);
@@ -202,7 +202,7 @@ std::vector<std::size_t> patchesOf(const std::vector<Layer>& layers, std::size_t
 
 class Builder {
  public:
-  Builder(const Patchwork& surface, const Arrangement& arrangement, bool bothWays, const Exec& exec)
+  Builder(const Patchwork& surface, const CutSurface& arrangement, bool bothWays, const Exec& exec)
       : surface_(surface), arrangement_(arrangement), bothWays_(bothWays), exec_(exec) {
     points_ = surface.positions;
     points_.reserve(arrangement.points.size());
@@ -291,7 +291,7 @@ class Builder {
   }
 
   const Patchwork& surface_;
-  const Arrangement& arrangement_;
+  const CutSurface& arrangement_;
   bool bothWays_;
   const Exec& exec_;
   std::vector<Vec3> points_;
@@ -304,7 +304,7 @@ Result<Hull> outerHull(const Patchwork& surface, bool bothWays, std::size_t pair
   if (exec.cancelled()) return cancelledError();
   if (met.more) return failure("too many triangles meet each other for an exact union");
   try {
-    const Arrangement arrangement = arrange(surface.positions, surface.triangles, met.pairs, exec);
+    const CutSurface arrangement = arrange(surface.positions, surface.triangles, met.pairs, exec);
     if (exec.cancelled()) return cancelledError();
     Hull hull = Builder(surface, arrangement, bothWays, exec).build();
     if (exec.cancelled()) return cancelledError();

@@ -58,7 +58,7 @@ class Slabs {
  private:
   /// Behind the edge that runs from a to b, corners c and c + 1 of the facet.
   void addWall(Index a, Index b, const Facet& beside, std::size_t c) {
-    const Origin from = originOf(beside, c), to = originOf(beside, (c + 1) % 3);
+    const CornerOrigin from = originOf(beside, c), to = originOf(beside, (c + 1) % 3);
     Facet wall{.base = {to, from, from}};
     wall.from = beside.from;
     wall.isNew = true;

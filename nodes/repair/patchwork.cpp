@@ -13,7 +13,7 @@ int wholeWeight(const Vec3& weights) {
 }
 
 template <class T>
-T valueAt(const std::vector<T>& perCorner, const Origin& origin) {
+T valueAt(const std::vector<T>& perCorner, const CornerOrigin& origin) {
   const std::size_t first = 3 * at(origin.triangle);
   if (const int c = wholeWeight(origin.weights); c >= 0)
     return perCorner[first + static_cast<std::size_t>(c)];
@@ -70,7 +70,7 @@ std::vector<T> carried(const std::vector<T>& perCorner, const Patchwork& surface
 
 }  // namespace
 
-Origin cornerOrigin(Index t, int c) { return {t, Vec3::Unit(c)}; }
+CornerOrigin cornerOrigin(Index t, int c) { return {t, Vec3::Unit(c)}; }
 
 Patchwork patchworkOf(const TriMesh& mesh) {
   Patchwork surface{mesh.positions, mesh.triangles, {}};
@@ -84,7 +84,7 @@ Patchwork patchworkOf(const TriMesh& mesh) {
   return surface;
 }
 
-Origin originOf(const Facet& facet, std::size_t c) {
+CornerOrigin originOf(const Facet& facet, std::size_t c) {
   const Vec3& weights = facet.corners[c];
   Eigen::Index nearest = 0;
   weights.maxCoeff(&nearest);
@@ -95,7 +95,7 @@ Origin originOf(const Facet& facet, std::size_t c) {
                  weights[2] * facet.base[2].weights};
 }
 
-Origin originAt(const Facet& facet, const Vec3& weights) {
+CornerOrigin originAt(const Facet& facet, const Vec3& weights) {
   Facet point = facet;
   point.corners[0] =
       weights[0] * facet.corners[0] + weights[1] * facet.corners[1] + weights[2] * facet.corners[2];

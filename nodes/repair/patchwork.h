@@ -9,13 +9,13 @@
 namespace sherd {
 
 /// A point of a triangle of the given surface.
-struct Origin {
+struct CornerOrigin {
   Index triangle = -1;
   Vec3 weights = Vec3::Zero();  ///< barycentric, sum 1
 };
 
 struct Facet {
-  std::array<Origin, 3> base;  ///< of the corners of the triangle that it is a part of
+  std::array<CornerOrigin, 3> base;  ///< of the corners of the triangle that it is a part of
   std::array<Vec3, 3> corners{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};  ///< barycentric in that triangle
   Index from = -1;      ///< the triangle of the given surface that the material comes from
   bool turned = false;  ///< its corners run the other way round than there
@@ -37,12 +37,12 @@ struct Patchwork {
 Patchwork patchworkOf(const TriMesh& mesh);
 
 /// Corner c (0 … 2) of triangle t of the given surface.
-Origin cornerOrigin(Index t, int c);
+CornerOrigin cornerOrigin(Index t, int c);
 
 /// Where corner c of the facet comes from; the nearest corner of its base where that isn't one triangle.
-Origin originOf(const Facet& facet, std::size_t c);
+CornerOrigin originOf(const Facet& facet, std::size_t c);
 /// The same for the point with the given barycentric weights in the facet.
-Origin originAt(const Facet& facet, const Vec3& weights);
+CornerOrigin originAt(const Facet& facet, const Vec3& weights);
 
 /// Turns the triangle round.
 void turn(Patchwork& surface, std::size_t t);

@@ -119,7 +119,7 @@ TEST(CellsSoup, ASliceTakesAwayWhatLiesBeyondAndShowsTheSection) {
   const Partition cells = cellsOf(beam(), {Vec3(0.2, 0.25, 0.25), Vec3(0.7, 0.25, 0.25)});
   const PictureSpace space = PictureSpace::of(*cells.embedding->tets->surface);
   for (const double z : {0.3, 0.25, 0.01}) {  // at 0.25 there are nodes
-    const Soup soup = cellsSoup(cells, CutPlane{2, z}, space);
+    const Soup soup = cellsSoup(cells, SlicePlane{2, z}, space);
     const auto isSection = [&](std::size_t t) {
       for (std::size_t c = 0; c < 3; ++c)
         if (placeOf(corner(soup, t, c), space).z() < z - 1e-6) return false;
@@ -137,7 +137,7 @@ TEST(CellsSoup, ASectionThroughAVoidHasAHole) {
   const Partition cells = cellsOf(hollow, {Vec3(0.3, 0.3, 0.3)});
   const PictureSpace space = PictureSpace::of(*hollow->surface);
   for (int axis = 0; axis < 3; ++axis) {
-    const Soup soup = cellsSoup(cells, CutPlane{axis, 0.27}, space);
+    const Soup soup = cellsSoup(cells, SlicePlane{axis, 0.27}, space);
     const double section = areaOf(soup, space, [&](std::size_t t) {
       for (std::size_t c = 0; c < 3; ++c)
         if (placeOf(corner(soup, t, c), space)[axis] < 0.27 - 1e-6) return false;
@@ -156,7 +156,7 @@ TEST(CellsSoup, ASectionsCellsAreTheNearestSites) {
                          0.5 * random.uniformAt(30 * seed + 3 * j + 2));
     const Partition cells = cellsOf(families::shared(families::box(16, 8, 8, Vec3(1, 0.5, 0.5))), sites);
     const PictureSpace space = PictureSpace::of(*cells.embedding->tets->surface);
-    const Soup soup = cellsSoup(cells, CutPlane{1, 0.23}, space);
+    const Soup soup = cellsSoup(cells, SlicePlane{1, 0.23}, space);
     double wrong = 0;
     for (std::size_t t = 0; t < soup.paint.size(); ++t) {
       const Vec3 centre = placeOf((corner(soup, t, 0) + corner(soup, t, 1) + corner(soup, t, 2)) / 3, space);
@@ -179,7 +179,7 @@ TEST(EnergySoup, IsLinearOnTheSection) {
     energy.nodeEnergy.push_back(volumes[n] * density(energy.tets->nodes[n]));
   const EnergyScale scale{1, 11};
   const PictureSpace space = PictureSpace::of(*energy.tets->surface);
-  const Soup soup = energySoup(energy, scale, CutPlane{1, 0.3}, space);
+  const Soup soup = energySoup(energy, scale, SlicePlane{1, 0.3}, space);
   ASSERT_EQ(soup.values.size(), soup.corners.size());
   EXPECT_NEAR(areaOf(soup, space), 2 * 0.5 + 2 * (1 + 0.5) * 0.3, 1e-6);
   for (std::size_t i = 0; i < soup.values.size(); ++i)
