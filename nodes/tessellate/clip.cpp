@@ -33,6 +33,7 @@ class EqualPositions {
   }
 
   std::vector<Index> take() { return std::move(same_); }
+  double spot() const { return spot_; }
 
  private:
   static constexpr double kSpot = 0x1p-48;
@@ -102,24 +103,41 @@ class Clipper {
       : a_(a), sheets_(sheets), exec_(exec) {}
 
   ClippedMeshes run() {
-    result_.same = EqualPositions(a_).take();
+    EqualPositions equal(a_);
+    result_.spot = equal.spot();
+    result_.same = equal.take();
     const std::size_t skin = blocksOf(a_.cutTriangles.size()), all = skin + blocksOf(sheets_.polygons.size());
     std::vector<PartedTriangles<SkinTriangle>> skinBlocks(skin);
     std::vector<PartedTriangles<SheetTriangle>> sheetBlocks(all - skin);
     std::vector<int> forced(all, 0);
+    std::vector<std::size_t> flat(all, 0);
     parallelFor(exec_, all, 1, [&](std::size_t begin, std::size_t end) {
       CutPolygon cut(a_.positions, result_.same);
       for (std::size_t b = begin; b < end; ++b)
-        forced[b] =
-            b < skin ? splitBlock(b, cut, skinBlocks[b]) : clipBlock(b - skin, cut, sheetBlocks[b - skin]);
+        if (b < skin) {
+          forced[b] = splitBlock(b, cut, skinBlocks[b]);
+          flat[b] = countFlat(skinBlocks[b]);
+        } else {
+          forced[b] = clipBlock(b - skin, cut, sheetBlocks[b - skin]);
+          flat[b] = countFlat(sheetBlocks[b - skin]);
+        }
     });
     gather(skinBlocks, result_.skin);
     gather(sheetBlocks, result_.sheet);
     result_.forced = static_cast<std::size_t>(std::accumulate(forced.begin(), forced.end(), 0));
+    result_.flat = std::accumulate(flat.begin(), flat.end(), std::size_t{0});
     return std::move(result_);
   }
 
  private:
+  template <class T>
+  std::size_t countFlat(const PartedTriangles<T>& block) const {
+    return static_cast<std::size_t>(std::ranges::count_if(block.triangles, [this](const T& t) {
+      const auto& [a, b, c] = t.corners;
+      return isFlat(a_.positions[at(a)], a_.positions[at(b)], a_.positions[at(c)], result_.spot);
+    }));
+  }
+
   static std::size_t blocksOf(std::size_t n) { return (n + kBlock - 1) / kBlock; }
 
   /// Both return how many triangles were forced.
@@ -309,6 +327,12 @@ class Clipper {
 
 ClippedMeshes clip(const Arrangement& arrangement, const Sheets& sheets, const Exec& exec) {
   return Clipper(arrangement, sheets, exec).run();
+}
+
+bool isFlat(const Vec3& a, const Vec3& b, const Vec3& c, double spot) {
+  const Vec3 u = b - a, v = c - a;
+  const double longest = std::max({u.squaredNorm(), v.squaredNorm(), (c - b).squaredNorm()});
+  return u.cross(v).squaredNorm() <= 4 * spot * spot * longest;
 }
 
 CornerWeights onSide(const Vec3& from, const Vec3& to, Eigen::Index p, Eigen::Index q, const Vec3& point) {

@@ -25,11 +25,16 @@ struct SheetTriangle {
 };
 
 struct ClippedMeshes {
-  std::vector<Index> same;  ///< per vertex: the least-numbered one that rounding put on the same spot
+  std::vector<Index> same;  ///< per vertex: the one that stands for all on the same spot but for rounding
+  double spot = 0;          ///< m: how far apart vertices on one spot may be
   PartedTriangles<SkinTriangle> skin;    ///< of the cut triangles only, by source
   PartedTriangles<SheetTriangle> sheet;  ///< by polygon
   std::size_t forced = 0;                ///< triangles that rounding left flat or overlapping
+  std::size_t flat = 0;                  ///< triangles that are isFlat()
 };
+
+/// Is it no higher than two spots over its longest side?
+bool isFlat(const Vec3& a, const Vec3& b, const Vec3& c, double spot);
 
 /// Traces the regions that the segments cut a triangle or polygon into and triangulates them. A region is
 /// followed from half-edge to half-edge by its cell alone, so the result closes whatever the rounded

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "geometry/solid.h"
 #include "tessellate/coincident.h"
+#include "tessellate/flat_triangles.h"
 #include "tessellate/solid_merger.h"
 #include "tessellate/solids.h"
 
@@ -31,6 +32,8 @@ class Assembler {
     for (const Index s : a_.cutTriangles) isCut[at(s)] = 1;
     out_.counts.cutSurfaceTriangles = a_.cutTriangles.size();
     removeThinLayers(a_, m_, isCut);
+    const std::size_t absorbed = absorbFlatTriangles(tets_, a_, m_, isCut);
+    out_.counts.forcedTriangles = m_.forced - std::min(m_.forced, absorbed);
     parts_.emplace(tets_, a_, m_, isCut, exec_);
     if (exec_.cancelled()) return {};
     findPieces();

@@ -112,7 +112,6 @@ Result<Fragments> tessellate(const Partition& cells, const TessellateParams& par
   ClippedMeshes meshes = clip(cut.arrangement, cut.sheets, exec);
   if (exec.cancelled()) return cancelledError();
   exec.progress(0.8);
-  const std::size_t forced = meshes.forced;
   const AssembleParams assembly{
       .sites = cells.siteCount(),
       .minVolume = std::max(params.minVolume * enclosedVolume(tets->patches), params.minVolumeAbsolute),
@@ -130,7 +129,6 @@ Result<Fragments> tessellate(const Partition& cells, const TessellateParams& par
   result.degreeGiven = cells.degreeGiven;
   result.counts.cutTets = cut.sheets.cutTets;
   result.counts.crackTriangles = cut.sheets.corners.size() - 2 * cut.sheets.polygons.size();
-  result.counts.forcedTriangles = forced;
   return result;
 }
 
