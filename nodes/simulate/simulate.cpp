@@ -7,6 +7,7 @@
 #include <numeric>
 #include <string>
 
+#include "simulate/assembly.h"
 #include "simulate/patch_load.h"
 #include "simulate/statics.h"
 #include "simulate/supernodal_solve.h"
@@ -35,10 +36,21 @@ EnergyField withoutEnergy(std::shared_ptr<const TetMesh> mesh, const Material& m
 
 constexpr std::size_t kImpactsAtOnce = 8 * kSolveWidth;  // whose forces and displacements are kept at a time
 
-std::vector<double> nodeEnergies(const TetMesh& mesh, std::span<const double> tetEnergy) {
+/// Per tetrahedron, how much of its energy the body holds: stiffness that only keeps up what is outside (see
+/// kLeastSupport) holds none of it. So a node's energy over its volume is a mean of energy densities, however
+/// little of the body reaches to the node.
+std::vector<double> sharesOfBody(const Elements& elements) {
+  std::vector<double> share = stiffnessShares(elements);
+  for (std::size_t t = 0; t < share.size(); ++t)
+    share[t] = std::min(1.0, elements.mesh().insideFraction[t] / share[t]);
+  return share;
+}
+
+std::vector<double> nodeEnergies(const TetMesh& mesh, std::span<const double> tetEnergy,
+                                 std::span<const double> shareOfBody) {
   std::vector<double> sum(mesh.nodes.size(), 0.0);
   for (std::size_t t = 0; t < tetEnergy.size(); ++t)
-    for (const Index n : mesh.tets[t]) sum[at(n)] += tetEnergy[t] / 4;
+    for (const Index n : mesh.tets[t]) sum[at(n)] += shareOfBody[t] * tetEnergy[t] / 4;
   return sum;
 }
 
@@ -64,7 +76,7 @@ Result<std::size_t> deform(EnergyField& field, const Impact& impact, ElementOrde
   if (exec.cancelled()) return cancelledError();
   StaticSolution solution = statics.solve(force, field.material.youngModulus);
   SHERD_CHECK(checkSolution(solution, sumOf(solution.tetEnergy)));
-  field.nodeEnergy = nodeEnergies(*field.tets, solution.tetEnergy);
+  field.nodeEnergy = nodeEnergies(*field.tets, solution.tetEnergy, sharesOfBody(*statics.elements()));
   field.tetEnergy = std::move(solution.tetEnergy);
   field.displacement = std::move(solution.displacement);
   field.displacement.resize(field.tets->nodes.size());
@@ -119,6 +131,7 @@ Result<std::vector<ImpactEnergy>> impactEnergies(std::shared_ptr<const TetMesh> 
                                                  ElementOrder elements, const Exec& exec) {
   SHERD_ASSIGN(const Statics statics, Statics::factor(mesh, {material.poissonRatio, elements}, exec));
   const PatchLoader loader(statics.elements());
+  const std::vector<double> shareOfBody = sharesOfBody(*statics.elements());
   std::vector<ImpactEnergy> energies;
   for (std::size_t begin = 0; begin < impacts.size(); begin += kImpactsAtOnce) {
     std::vector<std::vector<Vec3>> forces;
@@ -129,7 +142,7 @@ Result<std::vector<ImpactEnergy>> impactEnergies(std::shared_ptr<const TetMesh> 
     SHERD_ASSIGN(const std::vector<StaticSolution> solutions,
                  statics.solveAll(forces, material.youngModulus, exec));
     for (const StaticSolution& s : solutions) {
-      energies.push_back({sumOf(s.tetEnergy), nodeEnergies(*mesh, s.tetEnergy)});
+      energies.push_back({sumOf(s.tetEnergy), nodeEnergies(*mesh, s.tetEnergy, shareOfBody)});
       SHERD_CHECK(checkSolution(s, energies.back().total));
     }
     exec.progress(static_cast<double>(energies.size()) / static_cast<double>(impacts.size()));

@@ -148,7 +148,7 @@ void addContact(Builder& node) {
 NodeType simulateNode() {
   Builder node("Simulate", 1,
                "Moves the body until it is first hit, and gives the strain energy of that hit.");
-  node.implementation(2);
+  node.implementation(3);
   node.input<TetMesh>("body", "the body that is dropped or hit");
   addScene(node);
   addBall(node);

@@ -21,6 +21,8 @@ constexpr int kSearchRuns = 4;           ///< runs of Mesh_3 for the number of t
 constexpr int kTries = 5;                ///< further ones for enclosure, topology and gaps
 constexpr std::size_t kPatience = 3;     ///< of these, that may fail to halve what topology is off by
 constexpr double kMoreTets = 4;          ///< times as many where none of these gave a cage
+constexpr int kEmptyRuns = 6;            ///< runs of Mesh_3 that may find nothing to fill, each with …
+constexpr double kShorterEdge = 0.75;    ///< … so much shorter edges than the one before
 constexpr double kPerturbBound = 12, kExudeBound = 14;  ///< degrees
 constexpr std::size_t kMostTets = 20;          ///< times the number aimed at, that gaps may ask for …
 constexpr std::size_t kAlwaysAllowed = 40000;  ///< … or this many
@@ -139,7 +141,22 @@ class CageBuilder {
                        placeText(surface_.toMetres(gap.middle())));
   }
 
+  /// Points a whole edge apart can be too few for Mesh_3 to see what is thin and small between them.
   Result<VolumeMesh> meshOnce() {
+    for (int run = 1;; ++run) {
+      SHERD_ASSIGN(VolumeMesh mesh, meshWithEdges());
+      if (mesh.tetCount() > 0) return mesh;
+      if (run == kEmptyRuns)
+        return failure(fmt::format("the body is too thin or too small for edges of {:.3g} m: no tetrahedron "
+                                   "fits in",
+                                   sizes_.edgeLength * surface_.size),
+                       "ask for more tetrahedra, or for a shorter edge",
+                       params_.edgeLength > 0 ? "edge_length" : "tets");
+      sizes_.edgeLength *= kShorterEdge;
+    }
+  }
+
+  Result<VolumeMesh> meshWithEdges() {
     field_ = std::make_unique<CageField>(surface_, tree_, sizes_, levelSet_, exec_);
     if (exec_.cancelled()) return cancelledError();
     const std::size_t most = std::max(kAlwaysAllowed, kMostTets * static_cast<std::size_t>(aimedTets()));

@@ -169,6 +169,7 @@ NodeType trainDegreeNode() {
   node.output<std::string>("table",
                            "the examples as CSV: a line per drop, with its searches and the model's word");
   node.output<double>("error", "mean absolute error on orientations left out, as a share of the mean degree");
+  node.implementation(2);
   return node.run([](const Params& params, NodeIo& io) -> Result<void> {
     SHERD_ASSIGN(TrainDegreeOutput out,
                  trainDegree(io.in<TetMesh>("body"), io.in<Embedding>("embedding"),

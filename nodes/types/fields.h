@@ -48,7 +48,8 @@ struct EnergyField {
   std::shared_ptr<const TetMesh> tets;
   Material material;
   std::vector<double> tetEnergy;   ///< J, per tetrahedron
-  std::vector<double> nodeEnergy;  ///< J, per node: e_n, a quarter of each incident tetrahedron's
+  std::vector<double> nodeEnergy;  ///< J, per node: e_n, a quarter of each incident tetrahedron's, inside the
+                                   ///< surface: what holds up nodes outside of it doesn't count
   std::vector<Vec3> displacement;  ///< m, per node, free of rigid motion
 };
 

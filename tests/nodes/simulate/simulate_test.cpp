@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "graph/node_type.h"
 #include "simulate/simulate.h"
+#include "simulate/statics.h"
 #include "support/tet_families.h"
 
 namespace sherd {
@@ -42,6 +43,26 @@ SimulateParams tilted() {
   SimulateParams params;
   params.orientation = Vec3(25, 10, 40);
   return params;
+}
+
+/// A node that next to nothing of the body reaches to has the energy density of what does: raised to a power,
+/// it would otherwise outweigh all others.
+TEST(Simulate, WhatHoldsUpNodesOutsideTheSurfaceHasNoEnergy) {
+  TetMesh cage = box(4, 3, 3, Vec3(0.4, 0.3, 0.3));
+  for (std::size_t t = 0; t < cage.tets.size(); ++t)
+    for (const Index n : cage.tets[t])
+      if (cage.nodes[at(n)].x() == 0) cage.insideFraction[t] = 1e-9;
+  const Shared mesh = shared(std::move(cage));
+  const SimulateOutput out = run(mesh, tilted());
+  const std::vector<double> volume = lumpedVolumes(*mesh);
+  std::vector<double> largest(mesh->nodes.size(), 0.0);
+  for (std::size_t t = 0; t < mesh->tets.size(); ++t)
+    for (const Index n : mesh->tets[t])
+      largest[at(n)] = std::max(
+          largest[at(n)],
+          out.energy.tetEnergy[t] / (tetVolume(*mesh, t) * std::max(mesh->insideFraction[t], kLeastSupport)));
+  for (std::size_t n = 0; n < volume.size(); ++n)
+    EXPECT_LE(out.energy.nodeEnergy[n] / volume[n], largest[n] * (1 + 1e-12)) << n;
 }
 
 /// A fracture of a body that nothing hit would be one whole piece, as if it were tough.

@@ -100,6 +100,18 @@ TEST(Tetrahedralize, KeepsComponentsApart) {
 
 TEST(Tetrahedralize, HoldsAThinPlate) { expectGood(cageOf(box(Vec3::Zero(), Vec3(1, 1, 0.01)), 500), 1, 2); }
 
+TEST(Tetrahedralize, FillsWhatIsThinnerThanItsEdgesSee) {
+  TriMesh mesh;  // a tetrahedron a hundredth as thick as long
+  mesh.positions = {Vec3(2.89, 6.34, 8.81), Vec3(1.95, 0, 0), Vec3(4.84, 6.32, 10.38), Vec3(0, 7.9, 12.13)};
+  for (const auto& face : kTetraFace) mesh.triangles.push_back({face[0], face[1], face[2]});
+  for (const int tets : {60, 78, 100}) {
+    const auto cage = cageOf(mesh, tets);
+    ASSERT_TRUE(cage.ok()) << cage.error().text();
+    EXPECT_EQ(defectOf(*cage), "");
+    EXPECT_EQ(cageTopology(*cage), std::make_pair(1, 2));
+  }
+}
+
 TEST(Tetrahedralize, KeepsASlitOpen) {
   const auto cage = cageOf(slitBlock(0.3), 300);
   expectGood(cage, 1, 2);
