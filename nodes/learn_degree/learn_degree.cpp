@@ -24,6 +24,9 @@ namespace {
 constexpr double kLeastLogSpread = 1e-3;
 constexpr double kLeastShapeSpread = 1e-3;
 
+/// Of the time that learning takes.
+constexpr double kFitShare = 0.6;
+
 using ExampleList = std::vector<const DegreeExample*>;
 
 /// What is learned from, beside the examples.
@@ -56,13 +59,13 @@ Result<void> checkExample(const DegreeExample& example, std::size_t nodes) {
   return {};
 }
 
-Result<void> check(const std::vector<DegreeExample>& examples, const Body& body) {
+Result<void> check(const ExampleList& examples, const Body& body) {
   if (examples.empty()) return failure("there are no examples to learn from");
   const auto nodes = static_cast<std::size_t>(body.embedding.coordinates.cols());
   if (body.volume.size() != nodes || nodes == 0)
     return failure(fmt::format("{} volumes for {} nodes of the embedding", body.volume.size(), nodes));
   for (std::size_t i = 0; i < examples.size(); ++i)
-    if (const auto good = checkExample(examples[i], nodes); !good.ok())
+    if (const auto good = checkExample(*examples[i], nodes); !good.ok())
       return failure(fmt::format("example {} {}", i + 1, good.error().what), good.error().remedy);
   const double gamma = body.validFor.gamma, tolerance = body.params.tolerance;
   if (!(gamma > 0) || !std::isfinite(gamma))
@@ -313,17 +316,25 @@ Result<DegreeErrors> errorsOnGroupsLeftOut(const ExampleList& examples, const Bo
 
 }  // namespace
 
-Result<DegreeModel> learnDegree(const std::vector<DegreeExample>& examples, const Embedding& embedding,
+Result<DegreeModel> learnDegree(std::span<const DegreeExample* const> examples, const Embedding& embedding,
                                 const std::vector<double>& volume, const DegreeValidity& validFor,
                                 const LearnDegreeParams& params, const Exec& exec) {
   const Body body{embedding, volume, validFor, params};
-  SHERD_CHECK(check(examples, body));
-  ExampleList list;
-  for (const DegreeExample& e : examples) list.push_back(&e);
+  const ExampleList list(examples.begin(), examples.end());
+  SHERD_CHECK(check(list, body));
   Decided decided;
   SHERD_ASSIGN(DegreeModel model, fitModel(list, body, decided, exec));
+  exec.progress(kFitShare);
   SHERD_ASSIGN(model.errors, errorsOnGroupsLeftOut(list, body, decided, exec));
   return model;
+}
+
+Result<DegreeModel> learnDegree(const std::vector<DegreeExample>& examples, const Embedding& embedding,
+                                const std::vector<double>& volume, const DegreeValidity& validFor,
+                                const LearnDegreeParams& params, const Exec& exec) {
+  ExampleList list;
+  for (const DegreeExample& e : examples) list.push_back(&e);
+  return learnDegree(std::span<const DegreeExample* const>(list), embedding, volume, validFor, params, exec);
 }
 
 }  // namespace sherd

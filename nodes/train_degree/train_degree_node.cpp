@@ -158,6 +158,7 @@ NodeType trainDegreeNode() {
       "TrainDegree", 1,
       "Drops the body in many ways, searches into how many pieces it breaks each time, and learns to "
       "foretell that.");
+  node.implementation(2);
   node.input<TetMesh>("body", "the body that is dropped");
   node.input<Embedding>("embedding", "the distances to measure with, from Embed");
   node.optionalInput<ScalarGrid>("beta", "painted fragility β, as Weights is to have it");
@@ -172,7 +173,7 @@ NodeType trainDegreeNode() {
   return node.run([](const Params& params, NodeIo& io) -> Result<void> {
     SHERD_ASSIGN(TrainDegreeOutput out,
                  trainDegree(io.in<TetMesh>("body"), io.in<Embedding>("embedding"),
-                             io.in<ScalarGrid>("beta").get(), params.forStep(), io.exec()));
+                             io.in<ScalarGrid>("beta").get(), params.forStep(), io.exec(), io.memo()));
     const DegreeErrors& errors = out.model.errors;
     io.out("error", errors.meanDegree > 0 ? errors.meanAbsolute / errors.meanDegree : 0.0);
     io.out("model", std::move(out.model));
