@@ -28,8 +28,7 @@ UnitLoad unitLoadOf(const Impact& impact, double size) {
   for (const Contact& c : impact.contacts) {
     const Vec3 share = rounded(Vec3(kHertzPeak / c.duration / unit.strength * c.impulse), kGrain);
     if (share.isZero(0)) continue;
-    const double radius = std::max(rounded(c.radius, length), length);
-    unit.impact.contacts.push_back({rounded(c.point, length), share, kHertzPeak, radius});
+    unit.impact.contacts.push_back({rounded(c.point, length), share, kHertzPeak, c.radius});
   }
   return unit;
 }

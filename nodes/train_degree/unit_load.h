@@ -11,15 +11,14 @@
 namespace sherd {
 
 struct UnitLoad {
-  /// Contacts alone: the largest peak force of simulate/simulate.h is 1 N. Points, shares and radii are
-  /// rounded to kGrain of the body's size, or of 1 N, so that those of several heights, which differ by
-  /// rounding, are equal; contacts without force are left out.
+  /// Contacts alone: the largest peak force of simulate/simulate.h is 1 N. Points and forces are rounded to
+  /// kGrain of the body's size, or of 1 N, so that those of several heights, which differ by rounding, are
+  /// equal; contacts without force are left out.
   Impact impact;
   double strength = 0;  ///< N: the largest peak force
 };
 
-/// Far above the rounding of the flight, and far below what changes an energy that anybody looks at: the load
-/// is moved by less than 1e-7 of a patch's radius.
+/// 4e-9: far above the rounding of the flight, and far below what a patch is integrated to.
 inline constexpr int kGrainBits = 28;
 inline constexpr double kGrain = 1.0 / (1 << kGrainBits);
 
