@@ -159,7 +159,7 @@ class ByModel : public testing::Test {
   }
   std::string differing(const WeightField& field, const std::shared_ptr<const Embedding>& embedding,
                         double gamma) const {
-    const auto sites = predict(field, embedding, {.gamma = gamma});
+    const auto sites = predict(field, embedding, {.gamma = gamma, .otherBody = OtherBody::Refuse});
     if (sites.ok()) return "nothing";
     EXPECT_EQ(sites.error().port, "model");
     return sites.error().what;
@@ -242,6 +242,28 @@ TEST_F(ByModel, WhatItWasNotMadeForIsRefusedByName) {
   renumbered->tets = mesh;
   renumbered->coordinates.col(0).swap(renumbered->coordinates.col(1));
   EXPECT_NE(differing(other, renumbered, params.gamma).find("the tetrahedral mesh"), std::string::npos);
+}
+
+TEST_F(ByModel, OtherBodiesAreSearchedButNotTheSameWithOtherNumbers) {
+  const Body fragment = bodyOf(families::box(4, 4, 5, Vec3(0.08, 0.08, 0.1)));
+  TrainDegreeParams few = params;
+  few.orientations = few.repeats = 1;
+  const DropExamples hits = drops(fragment, few);
+  const WeightField field = fieldOf(fragment, hits, hits.drops.back());
+  const double gamma = 0.3 * params.gamma;  // of the fragment's own
+  Said said;
+  const Sites sites = valueOf(predict(field, fragment.embedding, {.gamma = gamma}, said.exec));
+  EXPECT_TRUE(said.info("the model was made for another body: the degree of this one is searched for"));
+  const Sites searched = valueOf(predictDegree(field, *fragment.embedding, {.gamma = gamma}, Exec{}));
+  EXPECT_GT(searched.positions.cols(), 1);
+  EXPECT_EQ(sites.positions, searched.positions);
+  EXPECT_EQ(sites.energy, searched.energy);
+  EXPECT_NE(differing(field, fragment.embedding, gamma).find("the tetrahedral mesh"), std::string::npos);
+  // Of the body that it was made for, anything else that differs is refused.
+  const auto refused =
+      predict(fieldOf(body, unseen, unseen.drops[0]), body.embedding, {.gamma = 2 * params.gamma});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().what.find("γ ("), std::string::npos);
 }
 
 }  // namespace
