@@ -24,6 +24,9 @@ namespace {
 constexpr double kLeastLogSpread = 1e-3;
 constexpr double kLeastShapeSpread = 1e-3;
 
+/// Of the time that learning takes.
+constexpr double kFitShare = 0.6, kEstimateShare = 0.1;
+
 using ExampleList = std::vector<const DegreeExample*>;
 
 /// What is learned from, beside the examples.
@@ -56,13 +59,13 @@ Result<void> checkExample(const DegreeExample& example, std::size_t nodes) {
   return {};
 }
 
-Result<void> check(const std::vector<DegreeExample>& examples, const Body& body) {
+Result<void> check(const ExampleList& examples, const Body& body) {
   if (examples.empty()) return failure("there are no examples to learn from");
   const auto nodes = static_cast<std::size_t>(body.embedding.coordinates.cols());
   if (body.volume.size() != nodes || nodes == 0)
     return failure(fmt::format("{} volumes for {} nodes of the embedding", body.volume.size(), nodes));
   for (std::size_t i = 0; i < examples.size(); ++i)
-    if (const auto good = checkExample(examples[i], nodes); !good.ok())
+    if (const auto good = checkExample(*examples[i], nodes); !good.ok())
       return failure(fmt::format("example {} {}", i + 1, good.error().what), good.error().remedy);
   const double gamma = body.validFor.gamma, tolerance = body.params.tolerance;
   if (!(gamma > 0) || !std::isfinite(gamma))
@@ -75,15 +78,34 @@ Result<void> check(const std::vector<DegreeExample>& examples, const Body& body)
   return {};
 }
 
+/// body(i) for i in [0, n), in parallel.
+template <class F>
+void forEach(std::size_t n, const Exec& exec, const F& body) {
+  parallelFor(exec, n, 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
 /// Examples with equal weights as one.
-std::vector<ExampleList> distinct(const ExampleList& examples) {
+std::vector<ExampleList> distinct(const ExampleList& examples, const Exec& exec) {
   std::vector<ExampleList> out;
+  std::vector<Digest> digests(examples.size());
+  forEach(examples.size(), exec,
+          [&](std::size_t i) { digests[i] = Hasher().add(examples[i]->weight).digest(); });
   std::map<Digest, std::size_t> place;
-  for (const DegreeExample* e : examples) {
-    const auto [at, isNew] = place.emplace(Hasher().add(e->weight).digest(), out.size());
+  for (std::size_t i = 0; i < examples.size(); ++i) {
+    const auto [at, isNew] = place.emplace(digests[i], out.size());
     if (isNew) out.emplace_back();
-    out[at->second].push_back(e);
+    out[at->second].push_back(examples[i]);
   }
+  return out;
+}
+
+/// Those that a process is made of: no more than it can hold.
+std::vector<ExampleList> thinned(std::vector<ExampleList> distinct) {
+  std::vector<ExampleList> out;
+  for (const Eigen::Index i : evenlyChosen(static_cast<Eigen::Index>(distinct.size()), kMostExamples))
+    out.push_back(std::move(distinct[static_cast<std::size_t>(i)]));
   return out;
 }
 
@@ -126,11 +148,13 @@ Result<void> setBasis(const std::vector<ExampleList>& distinct, double tolerance
   return {};
 }
 
-void setFeatureScale(const std::vector<ExampleList>& distinct, const Body& body, DegreeModel& model) {
+void setFeatureScale(const std::vector<ExampleList>& distinct, const Body& body, DegreeModel& model,
+                     const Exec& exec) {
   Eigen::MatrixXd features(kFeatures, static_cast<Eigen::Index>(distinct.size()));
-  for (Eigen::Index i = 0; i < features.cols(); ++i)
-    features.col(i) = logFeatures(distinct[static_cast<std::size_t>(i)][0]->weight, body.volume,
-                                  body.embedding, body.validFor.gamma);
+  forEach(distinct.size(), exec, [&](std::size_t i) {
+    features.col(static_cast<Eigen::Index>(i)) =
+        logFeatures(distinct[i][0]->weight, body.volume, body.embedding, body.validFor.gamma);
+  });
   model.featureScale.resize(kFeatures, 2);
   const Eigen::VectorXd mean = features.rowwise().mean();
   const Eigen::VectorXd variance =
@@ -144,15 +168,15 @@ struct Points {
   Eigen::VectorXd residual;
 };
 
-Points pointsOf(const std::vector<ExampleList>& distinct, const Body& body, const DegreeModel& model) {
+Points pointsOf(const std::vector<ExampleList>& distinct, const Body& body, const DegreeModel& model,
+                const Exec& exec) {
   const auto n = static_cast<Eigen::Index>(distinct.size());
   Points points{Eigen::MatrixXd(model.featureScale.rows() + model.basis.rows(), n), Eigen::VectorXd(n)};
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const WeightPoint p =
-        pointOf(model, distinct[static_cast<std::size_t>(i)][0]->weight, body.volume, body.embedding);
-    points.z.col(i) = p.z;
-    points.residual[i] = p.residual;
-  }
+  forEach(distinct.size(), exec, [&](std::size_t i) {
+    const WeightPoint p = pointOf(model, distinct[i][0]->weight, body.volume, body.embedding);
+    points.z.col(static_cast<Eigen::Index>(i)) = p.z;
+    points.residual[static_cast<Eigen::Index>(i)] = p.residual;
+  });
   return points;
 }
 
@@ -198,7 +222,7 @@ Result<void> fitNetworkModel(const std::vector<ExampleList>& all, const Body& bo
   if (!(model.scale > 0)) model.scale = 1;
   SHERD_CHECK(setBasis(all, body.params.tolerance, false, model, exec));
   Samples samples = samplesOf(all, model.method);
-  const Points points = pointsOf(all, body, model);
+  const Points points = pointsOf(all, body, model, exec);
   samples.points = points.z;
   SHERD_ASSIGN(Fit fit, model.method == DegreeMethod::Exact
                             ? fitExactly(samples, exec)
@@ -224,23 +248,28 @@ void foldLengths(const ProcessFit& fitted, DegreeModel& model) {
 Result<void> fitProcessModel(const ExampleList& examples, const Body& body, Decided& decided,
                              DegreeModel& model, const Exec& exec) {
   ExampleList broken;
-  for (const DegreeExample* e : examples)
-    if (wholeEnergy(e->weight, body.volume, body.embedding) >= body.validFor.gamma) broken.push_back(e);
+  std::vector<double> whole(examples.size());
+  forEach(examples.size(), exec,
+          [&](std::size_t i) { whole[i] = wholeEnergy(examples[i]->weight, body.volume, body.embedding); });
+  for (std::size_t i = 0; i < examples.size(); ++i)
+    if (whole[i] >= body.validFor.gamma) broken.push_back(examples[i]);
   model.featureScale = Eigen::MatrixXd::Zero(kFeatures, 2);
   model.slope.assign(static_cast<std::size_t>(kFeatures), 0.0);
   model.bias = std::log(1.5);  // a body that breaks has two pieces or more
   model.points.resize(kFeatures, 0);
   if (broken.empty()) return {};
-  const std::vector<ExampleList> all = distinct(broken);
-  setFeatureScale(all, body, model);
+  const std::vector<ExampleList> all = thinned(distinct(broken, exec));
+  if (exec.cancelled()) return cancelledError();
+  setFeatureScale(all, body, model, exec);
   SHERD_CHECK(setBasis(all, body.params.tolerance, true, model, exec));
   Samples samples = samplesOf(all, model.method);
-  samples.points = pointsOf(all, body, model).z;
+  samples.points = pointsOf(all, body, model, exec).z;
+  if (exec.cancelled()) return cancelledError();
   SHERD_ASSIGN(ProcessFit fitted, fitProcess(samples, kFeatures, decided.scales, exec));
   decided.scales = fitted.scales;
   setFit(std::move(fitted.fit), model);
   foldLengths(fitted, model);
-  setPoints(pointsOf(all, body, model), samples, model);
+  setPoints(pointsOf(all, body, model, exec), samples, model);
   return {};
 }
 
@@ -252,7 +281,7 @@ Result<DegreeModel> fitModel(const ExampleList& examples, const Body& body, Deci
   if (model.method == DegreeMethod::Process)
     SHERD_CHECK(fitProcessModel(examples, body, decided, model, exec));
   else
-    SHERD_CHECK(fitNetworkModel(distinct(examples), body, decided, model, exec));
+    SHERD_CHECK(fitNetworkModel(distinct(examples, exec), body, decided, model, exec));
   return model;
 }
 
@@ -302,28 +331,44 @@ Result<DegreeErrors> errorsOnGroupsLeftOut(const ExampleList& examples, const Bo
   });
   if (exec.cancelled()) return cancelledError();
   for (const auto& model : models) SHERD_CHECK(model);
+  exec.progress(1 - kEstimateShare);
+  std::vector<int> foretold(examples.size());
+  parallelFor(exec, examples.size(), 16, [&](std::size_t begin, std::size_t end) {
+    WeightField weights{body.embedding.tets, {}, {}, body.volume};
+    for (std::size_t i = begin; i < end; ++i) {
+      weights.weight = examples[i]->weight;
+      const DegreeModel& model = *models[static_cast<std::size_t>(folds.of[i])];
+      foretold[i] = estimateDegree(model, weights, body.embedding).degree;
+    }
+  });
+  if (exec.cancelled()) return cancelledError();
   ErrorSums sums;
-  for (std::size_t i = 0; i < examples.size(); ++i) {
-    const WeightField weights{body.embedding.tets, {}, examples[i]->weight, body.volume};
-    const DegreeModel& model = *models[static_cast<std::size_t>(folds.of[i])];
-    sums.add(*examples[i], estimateDegree(model, weights, body.embedding).degree);
-  }
+  for (std::size_t i = 0; i < examples.size(); ++i) sums.add(*examples[i], foretold[i]);
   return sums.errors();
 }
 
 }  // namespace
 
-Result<DegreeModel> learnDegree(const std::vector<DegreeExample>& examples, const Embedding& embedding,
+Result<DegreeModel> learnDegree(std::span<const DegreeExample* const> examples, const Embedding& embedding,
                                 const std::vector<double>& volume, const DegreeValidity& validFor,
                                 const LearnDegreeParams& params, const Exec& exec) {
   const Body body{embedding, volume, validFor, params};
-  SHERD_CHECK(check(examples, body));
-  ExampleList list;
-  for (const DegreeExample& e : examples) list.push_back(&e);
+  const ExampleList list(examples.begin(), examples.end());
+  SHERD_CHECK(check(list, body));
   Decided decided;
   SHERD_ASSIGN(DegreeModel model, fitModel(list, body, decided, exec));
+  if (exec.cancelled()) return cancelledError();
+  exec.progress(kFitShare);
   SHERD_ASSIGN(model.errors, errorsOnGroupsLeftOut(list, body, decided, exec));
   return model;
+}
+
+Result<DegreeModel> learnDegree(const std::vector<DegreeExample>& examples, const Embedding& embedding,
+                                const std::vector<double>& volume, const DegreeValidity& validFor,
+                                const LearnDegreeParams& params, const Exec& exec) {
+  ExampleList list;
+  for (const DegreeExample& e : examples) list.push_back(&e);
+  return learnDegree(std::span<const DegreeExample* const>(list), embedding, volume, validFor, params, exec);
 }
 
 }  // namespace sherd

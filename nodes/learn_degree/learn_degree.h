@@ -33,6 +33,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,9 @@ struct LearnDegreeParams {
 /// components and may be centres; a network's coefficients are fitted to all. Errors: no example; one that
 /// has not a finite weight ≥ 0 per node, or no search, by its number from 1; γ not above 0; parameters out of
 /// range; cancelled. Cost: O(examples · nodes · components) and 60 · 512³.
+Result<DegreeModel> learnDegree(std::span<const DegreeExample* const> examples, const Embedding& embedding,
+                                const std::vector<double>& volume, const DegreeValidity& validFor,
+                                const LearnDegreeParams& params, const Exec& exec);
 Result<DegreeModel> learnDegree(const std::vector<DegreeExample>& examples, const Embedding& embedding,
                                 const std::vector<double>& volume, const DegreeValidity& validFor,
                                 const LearnDegreeParams& params, const Exec& exec);

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <vector>
 
+#include "base/parallel.h"
 #include "learn_degree/principal_components.h"
 
 namespace sherd {
@@ -80,18 +82,25 @@ class Process {
   Eigen::MatrixXd featureDistance2_, componentDistance2_;
 };
 
-/// Tries the values for one of the scales; true where another is better.
+/// Tries the other values for one of the scales; true where one is better.
 bool improve(const Process& process, ProcessScales& scales, double ProcessScales::*one,
              std::span<const double> values, double& best, const Exec& exec) {
-  bool changed = false;
+  std::vector<ProcessScales> tried;
   for (const double value : values) {
-    ProcessScales tried = scales;
-    tried.*one = value;
-    if (exec.cancelled()) return false;
-    const double likelihood = process.likelihood(tried);
-    if (!(likelihood > best)) continue;
-    best = likelihood;
-    scales = tried;
+    if (value == scales.*one) continue;
+    tried.push_back(scales);
+    tried.back().*one = value;
+  }
+  std::vector<double> likelihood(tried.size());
+  parallelFor(exec, tried.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) likelihood[i] = process.likelihood(tried[i]);
+  });
+  if (exec.cancelled()) return false;
+  bool changed = false;
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    if (!(likelihood[i] > best)) continue;
+    best = likelihood[i];
+    scales = tried[i];
     changed = true;
   }
   return changed;

@@ -41,7 +41,12 @@ Result<Sites> predictByModel(const DegreeModel& model, const WeightField& weight
   PredictDegreeParams grown = params;
   if (params.degree == 0) {
     SHERD_CHECK(checkLloydInput(*embedding, weights));
-    SHERD_CHECK(checkValidity(model, validityOf(weights, embedding, params.gamma)));
+    const DegreeValidity wanted = validityOf(weights, embedding, params.gamma);
+    if (model.validFor.tets != wanted.tets && params.otherBody == OtherBody::Search) {
+      exec.info("the model was made for another body: the degree of this one is searched for");
+      return predictDegree(weights, *embedding, pinned, params, exec);
+    }
+    SHERD_CHECK(checkValidity(model, wanted));
     grown.degree = foretold(estimateDegree(model, weights, *embedding, Deviation::Known), params, exec);
   }
   // Pins count among the pieces of a body that breaks, and play no part in one that doesn't.

@@ -29,10 +29,14 @@ NodeType predictDegreeNode() {
       .choice("outside", &PredictDegreeParams::outside,
               {{"search", OutsideModel::Search}, {"predict", OutsideModel::Predict}},
               "with a model, what to do with a hit unlike all that it was made of")
+      .choice("other_body", &PredictDegreeParams::otherBody,
+              {{"search", OtherBody::Search}, {"refuse", OtherBody::Refuse}},
+              "with a model, what to do with a body that it wasn't made for, such as a fragment; what else "
+              "differs for the same body (γ, α, β, material, embedding) is refused in any case")
       .output<std::int64_t>("degree", "number of sites N; 1: it does not break")
       .output<Sites>("sites", "the sites, with E_D and γ")
       .output<double>("energy", "E_D of these sites, J·m²")
-      .implementation(2)
+      .implementation(3)
       .run([](const PredictDegreeParams& params, NodeIo& io) -> Result<void> {
         const auto weights = io.in<WeightField>("weights");
         const auto embedding = io.in<Embedding>("embedding");

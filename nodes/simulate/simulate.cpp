@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <iterator>
 #include <numeric>
 #include <string>
 
+#include "base/parallel.h"
 #include "simulate/assembly.h"
 #include "simulate/patch_load.h"
 #include "simulate/statics.h"
@@ -118,6 +120,24 @@ Result<std::vector<Vec3>> forcesOf(const PatchLoader& loader, std::size_t nodes,
   return force;
 }
 
+Result<std::vector<std::vector<Vec3>>> forcesOfAll(const PatchLoader& loader, std::size_t nodes,
+                                                   std::span<const Impact> impacts, const Exec& exec) {
+  std::vector<std::vector<Vec3>> forces(impacts.size());
+  std::vector<Result<void>> results(impacts.size());
+  parallelFor(exec, impacts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      auto force = forcesOf(loader, nodes, impacts[i]);
+      if (force.ok())
+        forces[i] = std::move(force).value();
+      else
+        results[i] = force.error();
+    }
+  });
+  if (exec.cancelled()) return cancelledError();
+  for (const Result<void>& result : results) SHERD_CHECK(result);
+  return forces;
+}
+
 }  // namespace
 
 double totalEnergy(const EnergyField& field) { return sumOf(field.tetEnergy); }
@@ -126,28 +146,38 @@ Result<std::vector<Vec3>> impactForces(std::shared_ptr<const Elements> elements,
   return forcesOf(PatchLoader(elements), elements->nodeCount(), impact);
 }
 
-Result<std::vector<ImpactEnergy>> impactEnergies(std::shared_ptr<const TetMesh> mesh,
-                                                 std::span<const Impact> impacts, const Material& material,
-                                                 ElementOrder elements, const Exec& exec) {
+Result<void> eachImpactEnergy(std::shared_ptr<const TetMesh> mesh, std::span<const Impact> impacts,
+                              const Material& material, ElementOrder elements, const Exec& exec,
+                              const ImpactEnergySink& sink) {
   SHERD_ASSIGN(const Statics statics, Statics::factor(mesh, {material.poissonRatio, elements}, exec));
   const PatchLoader loader(statics.elements());
   const std::vector<double> shareOfBody = sharesOfBody(*statics.elements());
-  std::vector<ImpactEnergy> energies;
   for (std::size_t begin = 0; begin < impacts.size(); begin += kImpactsAtOnce) {
-    std::vector<std::vector<Vec3>> forces;
-    for (const Impact& impact : impacts.subspan(begin, std::min(kImpactsAtOnce, impacts.size() - begin))) {
-      SHERD_ASSIGN(std::vector<Vec3> force, forcesOf(loader, statics.elements()->nodeCount(), impact));
-      forces.push_back(std::move(force));
-    }
+    const auto some = impacts.subspan(begin, std::min(kImpactsAtOnce, impacts.size() - begin));
+    SHERD_ASSIGN(const auto forces, forcesOfAll(loader, statics.elements()->nodeCount(), some, exec));
     SHERD_ASSIGN(const std::vector<StaticSolution> solutions,
                  statics.solveAll(forces, material.youngModulus, exec));
+    std::vector<ImpactEnergy> energies;
     for (const StaticSolution& s : solutions) {
       energies.push_back({sumOf(s.tetEnergy), nodeEnergies(*mesh, s.tetEnergy, shareOfBody)});
       SHERD_CHECK(checkSolution(s, energies.back().total));
     }
-    exec.progress(static_cast<double>(energies.size()) / static_cast<double>(impacts.size()));
+    SHERD_CHECK(sink(begin, std::move(energies)));
+    exec.progress(static_cast<double>(begin + some.size()) / static_cast<double>(impacts.size()));
   }
-  return energies;
+  return {};
+}
+
+Result<std::vector<ImpactEnergy>> impactEnergies(std::shared_ptr<const TetMesh> mesh,
+                                                 std::span<const Impact> impacts, const Material& material,
+                                                 ElementOrder elements, const Exec& exec) {
+  std::vector<ImpactEnergy> all;
+  SHERD_CHECK(eachImpactEnergy(std::move(mesh), impacts, material, elements, exec,
+                               [&](std::size_t, std::vector<ImpactEnergy> energies) -> Result<void> {
+                                 std::move(energies.begin(), energies.end(), std::back_inserter(all));
+                                 return {};
+                               }));
+  return all;
 }
 
 Result<SimulateOutput> simulate(std::shared_ptr<const TetMesh> mesh, const SimulateParams& params,

@@ -11,6 +11,7 @@
 // without that its quasi-static energy can be larger than the kinetic energy of the hit.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -53,11 +54,20 @@ struct ImpactEnergy {
   std::vector<double> nodeEnergy;  ///< J, per node of the mesh: EnergyField::nodeEnergy
 };
 
+/// Takes the energies of the impacts from number `first` on, and may say that something went wrong.
+using ImpactEnergySink = std::function<Result<void>(std::size_t first, std::vector<ImpactEnergy> energies)>;
+
 /// The energies that simulate() finds for these impacts, to the bit (total: that of `work` up to rounding),
 /// with one factorization and blocks of kSolveWidth back-substitutions: for training on a thousand impacts of
-/// a body. Impacts that hit nothing have no energy. Errors: those of Statics::factor and PatchLoader::add; an
-/// energy that isn't finite, or not to be had since the body is too flat or hangs together by too little;
-/// cancelled. Memory beyond the factor: O(nodes) per impact.
+/// a body. `sink` is called with some of them at a time, in their order, by the calling thread. Impacts that
+/// hit nothing have no energy. Errors: those of `sink`, Statics::factor and PatchLoader::add; an energy that
+/// isn't finite, or not to be had since the body is too flat or hangs together by too little; cancelled.
+/// Memory beyond the factor: O(nodes) for each of some hundred impacts.
+Result<void> eachImpactEnergy(std::shared_ptr<const TetMesh> mesh, std::span<const Impact> impacts,
+                              const Material& material, ElementOrder elements, const Exec& exec,
+                              const ImpactEnergySink& sink);
+
+/// The same, all at once.
 Result<std::vector<ImpactEnergy>> impactEnergies(std::shared_ptr<const TetMesh> mesh,
                                                  std::span<const Impact> impacts, const Material& material,
                                                  ElementOrder elements, const Exec& exec);

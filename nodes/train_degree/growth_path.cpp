@@ -2,55 +2,82 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "cvd/cvd.h"
+#include "types/value_bytes.h"
 
 namespace sherd {
 namespace {
 
-/// What rounding leaves between the deformations by two hits that differ in strength alone.
-constexpr double kProportional = 1e-9;
+std::span<const double> within(std::span<const double> energy, int most) {
+  return energy.first(std::min(energy.size(), static_cast<std::size_t>(std::max(most, 0))));
+}
+
+/// The search as it was at the path's end. Labels are exact before and after, so they follow from the sites.
+Lloyd stateOf(const GrowthPath& path, const Embedding& embedding, const WeightField& weights,
+              const Exec& exec) {
+  if (path.energy.empty()) return firstSites(embedding, weights, nullptr, exec);
+  Lloyd lloyd(embedding, weights);
+  for (Eigen::Index j = 0; j < path.sites.cols() && !exec.cancelled(); ++j)
+    lloyd.addSite(path.sites.col(j), exec);
+  return lloyd;
+}
 
 }  // namespace
 
-Result<std::vector<double>> growthPath(const Embedding& embedding, const WeightField& weights, double gamma,
-                                       std::int64_t seed, int most, const Exec& exec) {
-  SHERD_CHECK(checkLloydInput(embedding, weights));
-  Lloyd lloyd(embedding, weights);
-  lloyd.addSite(bodyCentroid(embedding, weights), exec);
-  if (exec.cancelled()) return cancelledError();
-  std::vector<double> energy{lloyd.energy()};
-  while (static_cast<int>(energy.size()) < most && !(energy.back() < gamma)) {
-    SHERD_ASSIGN(const bool grown, growSite(lloyd, embedding, weights, Growth::ByEnergy, seed, exec));
-    if (!grown) break;
-    energy.push_back(lloyd.energy());
-  }
-  return energy;
+void saveValue(ArchiveWriter& to, const GrowthPath& path) {
+  to.array(path.energy);
+  putBits(to, path.sites);
+  to.put(path.isExhausted);
 }
 
-std::optional<PathEnd> endOf(const std::vector<double>& path, double factor, double gamma) {
+std::optional<GrowthPath> loadValue(ArchiveReader& from, std::type_identity<GrowthPath>) {
+  GrowthPath path;
+  from.array(path.energy);
+  getBits(from, path.sites);
+  path.isExhausted = from.get<bool>();
+  const bool isSound = static_cast<Eigen::Index>(path.energy.size()) == path.sites.cols();
+  if (!from.ok() || !isSound) return std::nullopt;
+  return path;
+}
+
+bool isComplete(const GrowthPath& path, const PathGoal& goal) {
+  if (path.energy.empty()) return false;
+  return path.isExhausted || static_cast<int>(path.energy.size()) >= goal.most ||
+         goal.factor * path.energy.back() < goal.gamma;
+}
+
+Result<void> follow(GrowthPath& path, const PathGoal& goal, const Embedding& embedding,
+                    const WeightField& weights, std::int64_t seed, const Exec& exec) {
+  if (isComplete(path, goal)) return {};
+  SHERD_CHECK(checkLloydInput(embedding, weights));
+  GrowthPath longer = path;
+  Lloyd lloyd = stateOf(path, embedding, weights, exec);
+  if (exec.cancelled()) return cancelledError();
+  if (longer.energy.empty()) longer.energy.push_back(lloyd.energy());
+  while (!isComplete(longer, goal)) {
+    SHERD_ASSIGN(const bool grown, growSite(lloyd, embedding, weights, Growth::ByEnergy, seed, exec));
+    longer.isExhausted = !grown;
+    if (grown) longer.energy.push_back(lloyd.energy());
+  }
+  longer.sites = lloyd.sites();
+  path = std::move(longer);
+  return {};
+}
+
+std::optional<PathEnd> endOf(std::span<const double> all, const PathGoal& goal) {
+  const auto energy = within(all, goal.most);
   const auto first =
-      std::find_if(path.begin(), path.end(), [&](double energy) { return factor * energy < gamma; });
-  if (first == path.end()) return std::nullopt;
+      std::find_if(energy.begin(), energy.end(), [&](double e) { return goal.factor * e < goal.gamma; });
+  if (first == energy.end()) return std::nullopt;
   PathEnd end;
-  end.degree = static_cast<int>(first - path.begin()) + 1;
+  end.degree = static_cast<int>(first - energy.begin()) + 1;
   if (end.degree == 1) return end;
-  const double before = std::log(factor * *(first - 1)), after = std::log(factor * *first);
-  const double share = (before - std::log(gamma)) / (before - after);  // 0 where `after` is −∞
+  const double before = std::log(goal.factor * *(first - 1)), after = std::log(goal.factor * *first);
+  const double share = (before - std::log(goal.gamma)) / (before - after);  // 0 where `after` is −∞
   const double n = end.degree;
   end.crossing = std::clamp((n - 1) * std::pow(n / (n - 1), share), n - 1, n);
   return end;
-}
-
-std::optional<double> factorBetween(const std::vector<double>& weight, const std::vector<double>& reference) {
-  const double sum = std::accumulate(reference.begin(), reference.end(), 0.0);
-  if (!(sum > 0) || weight.size() != reference.size()) return std::nullopt;
-  const double factor = std::accumulate(weight.begin(), weight.end(), 0.0) / sum;
-  const double slack = kProportional * factor * *std::max_element(reference.begin(), reference.end());
-  for (std::size_t n = 0; n < weight.size(); ++n)
-    if (!(std::abs(weight[n] - factor * reference[n]) <= slack)) return std::nullopt;
-  return factor;
 }
 
 }  // namespace sherd

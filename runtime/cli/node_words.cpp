@@ -104,7 +104,10 @@ std::string helpText(const ParamInfo& info) {
 }
 
 std::string helpText(const PortInfo& input) {
-  const char* before = input.gathers ? "(of all frames and wedges) " : input.required ? "" : "(optional) ";
+  const char* before =
+      input.gathers ? input.required ? "(of all frames and wedges) " : "(optional, of all frames and wedges) "
+      : input.required ? ""
+                       : "(optional) ";
   return before + input.help;
 }
 

@@ -19,6 +19,9 @@ namespace {
 constexpr std::uint64_t kRecordShare = 10, kHistoryShare = 100;  // parts of the bound on objects
 constexpr std::int64_t kSettledNs = 50'000'000;
 
+/// What bytes under a key count as.
+const ValueType kPartType{"(part of a result)", nullptr, nullptr, 1};
+
 /// Values that are alive in this process, so that none of them is loaded twice.
 class LiveValues {
  public:
@@ -75,6 +78,7 @@ struct DiskStore::Impl {
   bool save(const ValueType& type, const std::shared_ptr<const void>& data, const Digest& digest, double ms);
   bool hasTooManyRecords() const;
   std::uint64_t collect(std::uint64_t most);
+  void keepBound();
 
   store::Directory directory;
   const std::uint64_t mostBytes;
@@ -133,6 +137,11 @@ std::uint64_t DiskStore::Impl::collect(std::uint64_t most) {
   freed += records.merge(mostOfRecords, records.bytesOnDisk() > mostOfRecords);
   const std::uint64_t others = records.bytesOnDisk() + histories.bytesOnDisk();
   return freed + objects.evict(most - std::min(others, most));
+}
+
+/// A run of days must not outgrow the bound until its end.
+void DiskStore::Impl::keepBound() {
+  if (savedBytes > mostBytes / 8 + (std::uint64_t{64} << 10)) collect(mostBytes);
 }
 
 Result<std::unique_ptr<DiskStore>> DiskStore::open(const std::string& directory, DiskStoreOptions options) {
@@ -198,9 +207,26 @@ bool DiskStore::save(const Value& value, const Digest& digest, double ms) {
   } catch (...) {
     impl_->directory.warn("a " + value.type().name + " is not kept in the cache: " + caught());
   }
-  // A run of days must not outgrow the bound until its end.
-  if (impl_->savedBytes > impl_->mostBytes / 8 + (std::uint64_t{64} << 10)) impl_->collect(impl_->mostBytes);
+  impl_->keepBound();
   return kept;
+}
+
+std::optional<std::string> DiskStore::part(const Digest& key) {
+  try {
+    const auto bytes = impl_->objects.read(kPartType, key);
+    return bytes ? std::optional<std::string>(bytes->payload) : std::nullopt;
+  } catch (...) {
+    impl_->directory.warn("a part of a result can't be loaded from the cache: " + caught());
+    return std::nullopt;
+  }
+}
+
+bool DiskStore::savePart(const Digest& key, std::string_view bytes, double ms) {
+  if (!impl_->directory.writable() || bytes.size() > impl_->mostBytes) return false;
+  const std::uint64_t written = impl_->objects.write(kPartType, key, ms, bytes);
+  impl_->savedBytes += written;
+  impl_->keepBound();
+  return written > 0;
 }
 
 std::optional<Digest> DiskStore::fileDigest(const std::string& path, const FileIdentity& identity) const {

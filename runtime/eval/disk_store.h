@@ -4,8 +4,9 @@
 //   DIR/sherd-cache        says what this directory is, and its format; a directory that holds other things
 //                          and not this file is refused, so that `cache clear` can't empty a stranger's
 //   DIR/records/*          append-only segments of records, one per writing process; merged now and then
-//   DIR/objects/ab/abcd…   one value each, named by its digest: header (magic, format, type name and version,
-//                          recompute time, payload length and checksum), payload
+//   DIR/objects/ab/abcd…   one value each, named by its digest, or part of a node's work (base/memo.h), named
+//                          by its key: header (magic, format, type name and version, recompute time, payload
+//                          length and checksum), payload
 //   DIR/history/*          what the last run of each graph looked like, for `plan`
 //   DIR/tmp/*              half-written things, renamed into place when they are whole
 //
@@ -88,6 +89,12 @@ class DiskStore {
   /// Keeps the value and its parts. `ms` is what making it took: evicting weighs that against the bytes.
   /// False where it could not be kept, or its type can't be.
   bool save(const Value& value, const Digest& digest, double ms);
+
+  /// Bytes under a key of whoever keeps them (base/memo.h): an object like others, checked, bounded and
+  /// evicted. None where it isn't there and sound, or memory doesn't suffice.
+  std::optional<std::string> part(const Digest& key);
+  /// False where it could not be kept.
+  bool savePart(const Digest& key, std::string_view bytes, double ms);
 
   /// Content digests of files by path and identity, so that big inputs are read once. The identity must have
   /// been taken before the content was read. That of a file that was changed within the last 50 ms is not

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "eval/evaluation.h"
+#include "eval/node_memo.h"
 
 namespace sherd {
 
@@ -183,9 +184,13 @@ std::optional<NodeResult> Evaluation::attempt(int i) {
   tell([i](EvalListener& listener) { listener.started(i); });
   NodeResult result;
   const std::vector<WireValue> inputs = gather(n.inputs);
+  std::optional<NodeMemo> memo;
+  if (options_.disk != nullptr) memo.emplace(*options_.disk, *n.type);
   const auto runWith = [&](const ParamValues& params) {
-    return runNode(graph_, i, params, inputs, token_,
-                   [&](double share) { tell([&](EvalListener& listener) { listener.progress(i, share); }); });
+    return runNode(
+        graph_, i, params, inputs, token_,
+        [&](double share) { tell([&](EvalListener& listener) { listener.progress(i, share); }); },
+        memo ? &*memo : nullptr);
   };
   if (n.wiredParams.empty()) {
     result = runWith(n.params);

@@ -114,7 +114,7 @@ Result<ParamValues> finalParams(const Graph::Node& node, std::span<const WireVal
 }
 
 NodeResult runNode(const Graph& graph, int i, const ParamValues& params, std::span<const WireValue> inputs,
-                   const CancelToken& token, const std::function<void(double)>& onProgress) {
+                   const CancelToken& token, const std::function<void(double)>& onProgress, Memo* memo) {
   const Graph::Node& node = graph.nodes[static_cast<std::size_t>(i)];
   NodeResult result;
   std::mutex messagesMutex;
@@ -126,7 +126,7 @@ NodeResult runNode(const Graph& graph, int i, const ParamValues& params, std::sp
     const std::lock_guard lock(messagesMutex);
     result.messages.push_back({level, text});
   };
-  NodeIo io(exec);
+  NodeIo io(exec, memo);
   result.error = setInputs(graph, node, inputs, io);
   if (result.error) return result;
   result.error = callNode(*node.type, params, io, inputs, result.outputs);

@@ -32,8 +32,9 @@ struct NodeResult {
 
 /// Runs the node of a graph. `inputs` has one entry per entry of Node::inputs. Exceptions and outputs that
 /// the type doesn't declare become errors. `onProgress` hears of each per cent once. Values that are passed
-/// through keep their digest.
+/// through keep their digest. `memo`: where parts of its work are kept, or null.
 NodeResult runNode(const Graph& graph, int node, const ParamValues& params, std::span<const WireValue> inputs,
-                   const CancelToken& token, const std::function<void(double)>& onProgress);
+                   const CancelToken& token, const std::function<void(double)>& onProgress,
+                   Memo* memo = nullptr);
 
 }  // namespace sherd

@@ -82,6 +82,8 @@ struct Uninterruptible {
   double longestMs = 0;  ///< measured, on the models and resolutions that the tests use
 };
 
+class Memo;
+
 /// What a running node sees: its inputs, its outputs, the user.
 class NodeIo {
  public:
@@ -97,9 +99,11 @@ class NodeIo {
     std::string label;
   };
 
-  explicit NodeIo(const Exec& exec) : exec_(exec) {}
+  explicit NodeIo(const Exec& exec, Memo* memo = nullptr) : exec_(exec), memo_(memo) {}
 
   const Exec& exec() const { return exec_; }
+  /// Where parts of the node's work may be kept (base/memo.h). Null where nothing is kept.
+  Memo* memo() const { return memo_; }
   /// The value wired to `port`. Never null for a required input; null for an optional one left open.
   template <class T>
   std::shared_ptr<const T> in(std::string_view port) const {
@@ -148,6 +152,7 @@ class NodeIo {
 
  private:
   const Exec& exec_;
+  Memo* const memo_;
   std::vector<Port> inputs_, outputs_;
   std::vector<std::string> written_;
 };
@@ -205,6 +210,13 @@ class NodeBuilder {
   NodeBuilder& gatheredInput(std::string name, std::string help) {
     addInput<T>(std::move(name), std::move(help), true);
     type_.inputs.back().gathers = true;
+    return *this;
+  }
+  /// The same, and it may be left open.
+  template <class T>
+  NodeBuilder& optionalGatheredInput(std::string name, std::string help) {
+    gatheredInput<T>(std::move(name), std::move(help));
+    type_.inputs.back().required = false;
     return *this;
   }
   template <class T>

@@ -22,7 +22,7 @@
 namespace sherd {
 
 /// Raised when a class that crosses the border changes its layout or meaning, or kLayouts its entries.
-inline constexpr std::uint32_t kPluginAbi = 3;
+inline constexpr std::uint32_t kPluginAbi = 4;
 
 #define SHERD_TEXT2(x) #x
 #define SHERD_TEXT(x) SHERD_TEXT2(x)

@@ -85,7 +85,7 @@ inline ContractExceptions packExceptions() {
       "CalibrateToughness.pieces", "ContactSheet.columns", "ConvexProxies.max_hulls", "CVD.degree",
       "CVD.max_iterations", "Embed.dimensions", "PredictDegree.degree", "PredictDegree.max_degree",
       "Preview.samples", "Repair.resolution", "SelectPiece.number", "Tetrahedralize.tets",
-      "TrainDegree.max_degree", "TrainDegree.orientations", "TrainDegree.repeats",
+      "TrainDegree.balls", "TrainDegree.max_degree", "TrainDegree.orientations", "TrainDegree.repeats",
       // seeds
       "CalibrateToughness.seed", "CVD.seed", "PaintBeta.seed", "PredictDegree.seed", "TrainDegree.seed",
       "WarpRest.seed",

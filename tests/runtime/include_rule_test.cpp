@@ -47,7 +47,7 @@ const std::vector<std::pair<std::string, Names>> kContracts{
     {"cvd", {}},
     {"learn_degree", {}},
     {"predict_degree", {"cvd", "learn_degree"}},
-    {"train_degree", {"simulate", "weights", "cvd", "learn_degree"}},
+    {"train_degree", {"rigid", "simulate", "weights", "cvd", "learn_degree"}},
     {"tessellate", {}},
     {"select_piece", {}},
     {"convex_proxies", {}},

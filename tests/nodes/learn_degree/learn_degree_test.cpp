@@ -1,10 +1,16 @@
 #include "learn_degree/learn_degree.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstdio>
 
 #include "base/parallel.h"
+#include "base/rng.h"
 #include "base/value_type.h"
 #include "nodes/learn_degree/examples.h"
+#include "support/sanitizers.h"
 
 namespace sherd {
 namespace {
@@ -181,6 +187,45 @@ TEST(LearnDegree, SameModelForAnyNumberOfThreads) {
   }
 }
 
+TEST(LearnDegree, ExamplesOfFewDimensions) {
+  // Two hits and what lies between them: all weights are in a plane, and fewer components than examples
+  // serve.
+  const Cloud c = cloud(200, 4, 11);
+  const double gamma = gammaFor(c, 15);
+  const auto one = hitAt(c, 3, 1), two = hitAt(c, 120, 1);
+  std::vector<DegreeExample> examples;
+  for (int i = 0; i <= 20; ++i) {
+    auto weight = one;
+    for (std::size_t n = 0; n < weight.size(); ++n) weight[n] += 0.05 * i * (two[n] - weight[n]);
+    examples.push_back(powerLaw(c, weight, gamma, i));
+  }
+  for (const DegreeMethod method : kAll)
+    for (const double tolerance : {0.0, 0.02}) {
+      const DegreeModel model = learned(c, examples, gamma, {.method = method, .tolerance = tolerance});
+      EXPECT_LE(model.basis.rows(), 2);
+      EXPECT_TRUE(model.basis.allFinite() && model.points.allFinite());
+      for (const DegreeExample& e : examples)
+        EXPECT_NEAR(estimate(c, model, e.weight).degree, e.degree[0], 1 + 0.1 * e.degree[0]);
+    }
+}
+
+TEST(LearnDegree, OneDegreeForAll) {
+  const Cloud c = cloud(200, 4, 12);
+  const double gamma = gammaFor(c, 15);
+  for (const int degree : {1, 2, 37}) {
+    auto examples = powerLaws(c, 12, 2, gamma);
+    for (DegreeExample& e : examples) e.degree = {degree, degree}, e.crossing = {degree - 0.5, degree - 0.5};
+    for (const DegreeMethod method : kAll) {
+      const DegreeModel model = learned(c, examples, gamma, {.method = method});
+      for (const DegreeExample& e : examples)
+        // A process takes 1 for whatever is below γ as it is, and these aren't.
+        EXPECT_EQ(estimate(c, model, e.weight).degree,
+                  method == DegreeMethod::Process ? std::max(degree, 2) : degree);
+      EXPECT_EQ(model.errors.noise, 0);
+    }
+  }
+}
+
 TEST(LearnDegree, WrongExamplesAreNamed) {
   const Cloud c = cloud(100, 4, 8);
   const auto says = [&](const std::function<void(std::vector<DegreeExample>&)>& spoil) {
@@ -193,6 +238,8 @@ TEST(LearnDegree, WrongExamplesAreNamed) {
   EXPECT_EQ(says([](auto& e) { e[4].weight[0] = -1; }), "example 5 has a weight of -1");
   EXPECT_EQ(says([](auto& e) { e[0].weight.pop_back(); }), "example 1 has 99 weights for 100 nodes");
   EXPECT_EQ(says([](auto& e) { e[1].degree = {0}; }), "example 2 has a degree of 0");
+  EXPECT_EQ(says([](auto& e) { e[3].crossing = {std::nan("")}; }), "example 4 crosses γ at nan pieces");
+  EXPECT_EQ(says([](auto& e) { e[3].weight[1] = HUGE_VAL; }), "example 4 has a weight of inf");
   EXPECT_EQ(says([](auto& e) { e[1].degree.clear(); }),
             "example 2 has no search, or not one crossing for each");
   EXPECT_EQ(says([](auto& e) { e.clear(); }), "there are no examples to learn from");
@@ -222,6 +269,49 @@ TEST(LearnDegree, MoreExamplesThanMayBeCentres) {
   const DegreeModel process = learned(c, examples, gamma);
   EXPECT_LE(process.centres.size(), 512u);
   EXPECT_GT(process.errors.rSquared, 0.99);
+}
+
+/// Bytes that the process has held at most.
+double mostMemory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+TEST(LearnDegreeSlow, AHundredThousandExamplesInFourGibibytes) {
+  if (test::kSlowdown > 1) GTEST_SKIP() << "sanitizers take several times the memory";
+  const Cloud c = cloud(1600, 3, 13);
+  const double gamma = gammaFor(c, 15);
+  std::vector<std::vector<double>> hits;
+  std::vector<double> whole;
+  for (int h = 0; h < 40; ++h)
+    hits.push_back(hitAt(c, 40 * h, 1)), whole.push_back(wholeEnergy(c, hits.back()));
+  std::vector<DegreeExample> examples(100'000);
+  Rng rng(5);
+  for (std::size_t i = 0; i < examples.size(); ++i) {
+    const std::size_t a = i % 40, b = (i / 40) % 40;
+    const double share = rng.uniform(), strength = 1 + 4 * rng.uniform();
+    DegreeExample& e = examples[i];
+    e.weight.resize(1600);
+    for (std::size_t n = 0; n < 1600; ++n)
+      e.weight[n] = strength * ((1 - share) * hits[a][n] + share * hits[b][n]);
+    const double crossing = std::pow(strength * ((1 - share) * whole[a] + share * whole[b]) / gamma, 1.5);
+    e.degree = {std::max(1, static_cast<int>(std::ceil(crossing)))};
+    e.crossing = {std::max(0.5, crossing)};
+    e.group = static_cast<int>(i / 10);
+  }
+  const double before = mostMemory();
+  for (const DegreeMethod method : {DegreeMethod::Process, DegreeMethod::Network}) {
+    const auto start = std::chrono::steady_clock::now();
+    const DegreeModel model = learned(c, examples, gamma, {.method = method});
+    EXPECT_EQ(model.errors.examples, 100'000);
+    EXPECT_GT(model.errors.rSquared, 0.97);
+    std::printf("%s: %.1f s, %.2f GiB, of which the examples %.2f; R² %.4f\n",
+                method == DegreeMethod::Process ? "process" : "network",
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                mostMemory() / 0x1p30, before / 0x1p30, model.errors.rSquared);
+    EXPECT_LT(mostMemory(), 0x1p32);
+  }
 }
 
 TEST(LearnDegree, CancelledEndsAsThat) {

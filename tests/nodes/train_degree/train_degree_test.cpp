@@ -4,54 +4,13 @@
 
 #include "base/parallel.h"
 #include "base/value_type.h"
+#include "nodes/train_degree/block.h"
 #include "predict_degree/predict_degree.h"
 #include "support/said.h"
-#include "support/tet_families.h"
-#include "train_degree/growth_path.h"
 #include "train_degree/rotations.h"
 
 namespace sherd {
 namespace {
-
-struct Body {
-  std::shared_ptr<const TetMesh> tets;
-  std::shared_ptr<const Embedding> embedding;
-};
-
-Body bodyOf(TetMesh mesh) {
-  Body body;
-  body.tets = std::make_shared<const TetMesh>(std::move(mesh));
-  auto e = std::make_shared<Embedding>();
-  e->tets = body.tets;
-  const auto& nodes = body.tets->nodes;
-  e->coordinates.resize(3, static_cast<Eigen::Index>(nodes.size()));
-  for (std::size_t n = 0; n < nodes.size(); ++n) e->coordinates.col(static_cast<Eigen::Index>(n)) = nodes[n];
-  e->diameter = (e->coordinates.rowwise().maxCoeff() - e->coordinates.rowwise().minCoeff()).norm();
-  body.embedding = e;
-  return body;
-}
-
-/// A block of stoneware, 12 × 8 × 20 cm.
-Body block() { return bodyOf(families::box(6, 4, 10, Vec3(0.12, 0.08, 0.2))); }
-
-TrainDegreeParams small() {
-  TrainDegreeParams p;
-  p.heights = {0.5, 1, 2};
-  p.orientations = 8;
-  p.repeats = 2;
-  p.gamma = 2e-3;
-  return p;
-}
-
-template <class T>
-T valueOf(Result<T> result) {
-  EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().text());
-  return std::move(result).value();
-}
-
-DropExamples drops(const Body& body, const TrainDegreeParams& params) {
-  return valueOf(dropExamples(body.tets, body.embedding, nullptr, params, Exec{}));
-}
 
 WeightField fieldOf(const Body& body, const DropExamples& all, const DropExample& drop) {
   return {body.tets,  all.validFor.material, drop.example.weight,
@@ -76,27 +35,6 @@ TEST(Rotations, AreSpreadEvenly) {
     EXPECT_TRUE(std::equal(fewer.begin(), fewer.end(), all.begin()));
   }
   EXPECT_NE(uniformOrientations(1, 1)[0], uniformOrientations(1, 2)[0]);
-}
-
-TEST(GrowthPath, EndsWhereTheLineThroughTheLogarithmsFallsToGamma) {
-  const std::vector<double> path{8, 4, 1, 0};
-  EXPECT_EQ(endOf(path, 1, 9)->degree, 1);
-  EXPECT_EQ(endOf(path, 1, 9)->crossing, 0.5);
-  EXPECT_EQ(endOf(path, 1, 8)->degree, 2);  // below, not at
-  EXPECT_EQ(endOf(path, 1, 8)->crossing, 1);
-  EXPECT_NEAR(endOf(path, 1, 2)->crossing, std::sqrt(6.0), 1e-12);  // halfway from 2 to 3 in logarithms
-  EXPECT_EQ(endOf(path, 10, 1)->degree, 4);
-  EXPECT_EQ(endOf(path, 10, 1)->crossing, 3);
-  EXPECT_FALSE(endOf({8, 4, 1}, 10, 1));
-}
-
-TEST(GrowthPath, FactorsAreOfProportionalWeightsAlone) {
-  const std::vector<double> w{1, 2, 0, 4};
-  EXPECT_EQ(factorBetween({0.5, 1, 0, 2}, w), 0.5);
-  EXPECT_EQ(factorBetween({0, 0, 0, 0}, w), 0.0);
-  EXPECT_FALSE(factorBetween({0.5, 1, 1e-7, 2}, w));
-  EXPECT_FALSE(factorBetween(w, {0, 0, 0, 0}));
-  EXPECT_FALSE(factorBetween({1, 2}, w));
 }
 
 TEST(TrainDegree, SharedPathsFindWhatEachSearchFinds) {
@@ -144,9 +82,10 @@ TEST(TrainDegree, TellsAUserHowGoodItIsAndWritesATable) {
   EXPECT_TRUE(said.info("learned from 24 drops that give "));
   EXPECT_TRUE(said.info("on orientations left out it is off by "));
   EXPECT_EQ(std::count(out.table.begin(), out.table.end(), '\n'), 25);
-  EXPECT_TRUE(
-      out.table.starts_with("orientation_x,orientation_y,orientation_z,height,strain_energy,whole_energy,"
-                            "foretold,degree_1,degree_2\n"));
+  EXPECT_TRUE(out.table.starts_with(
+      "source,orientation_x,orientation_y,orientation_z,height,target_x,target_y,target_z,"
+      "direction_x,direction_y,direction_z,speed,strain_energy,whole_energy,foretold,"
+      "degree_1,degree_2\ndrop,"));
   EXPECT_EQ(out.model.errors.examples, 48);
   EXPECT_GT(out.model.errors.rSquared, 0.7);
 }
@@ -183,7 +122,7 @@ TEST(TrainDegree, DropsThatDoNotReachGammaAreLeftOutAndSaidSo) {
   EXPECT_EQ(none.error().port, "gamma");
   params.gamma = 1e9;
   EXPECT_TRUE(trainDegree(body.tets, body.embedding, nullptr, params, said.exec).ok());
-  EXPECT_TRUE(said.warning("no drop breaks the body"));
+  EXPECT_TRUE(said.warning("none of the drops breaks the body"));
 }
 
 TEST(TrainDegree, WrongParametersAreNamed) {
@@ -196,7 +135,7 @@ TEST(TrainDegree, WrongParametersAreNamed) {
   };
   EXPECT_EQ(port([](auto& p) { p.heights = {1, 0}; }), "heights");
   EXPECT_EQ(port([](auto& p) { p.gamma = 0; }), "gamma");
-  EXPECT_EQ(port([](auto& p) { p.orientations = 0; }), "orientations");
+  EXPECT_EQ(port([](auto& p) { p.orientations = -1; }), "orientations");
   EXPECT_EQ(port([](auto& p) { p.repeats = 0; }), "repeats");
   EXPECT_EQ(port([](auto& p) { p.alpha = -1; }), "alpha");
   EXPECT_EQ(port([](auto& p) { p.drop.body.poissonRatio = 0.7; }), "poisson");
@@ -220,7 +159,7 @@ class ByModel : public testing::Test {
   }
   std::string differing(const WeightField& field, const std::shared_ptr<const Embedding>& embedding,
                         double gamma) const {
-    const auto sites = predict(field, embedding, {.gamma = gamma});
+    const auto sites = predict(field, embedding, {.gamma = gamma, .otherBody = OtherBody::Refuse});
     if (sites.ok()) return "nothing";
     EXPECT_EQ(sites.error().port, "model");
     return sites.error().what;
@@ -303,6 +242,28 @@ TEST_F(ByModel, WhatItWasNotMadeForIsRefusedByName) {
   renumbered->tets = mesh;
   renumbered->coordinates.col(0).swap(renumbered->coordinates.col(1));
   EXPECT_NE(differing(other, renumbered, params.gamma).find("the tetrahedral mesh"), std::string::npos);
+}
+
+TEST_F(ByModel, OtherBodiesAreSearchedButNotTheSameWithOtherNumbers) {
+  const Body fragment = bodyOf(families::box(4, 4, 5, Vec3(0.08, 0.08, 0.1)));
+  TrainDegreeParams few = params;
+  few.orientations = few.repeats = 1;
+  const DropExamples hits = drops(fragment, few);
+  const WeightField field = fieldOf(fragment, hits, hits.drops.back());
+  const double gamma = 0.3 * params.gamma;  // of the fragment's own
+  Said said;
+  const Sites sites = valueOf(predict(field, fragment.embedding, {.gamma = gamma}, said.exec));
+  EXPECT_TRUE(said.info("the model was made for another body: the degree of this one is searched for"));
+  const Sites searched = valueOf(predictDegree(field, *fragment.embedding, {.gamma = gamma}, Exec{}));
+  EXPECT_GT(searched.positions.cols(), 1);
+  EXPECT_EQ(sites.positions, searched.positions);
+  EXPECT_EQ(sites.energy, searched.energy);
+  EXPECT_NE(differing(field, fragment.embedding, gamma).find("the tetrahedral mesh"), std::string::npos);
+  // Of the body that it was made for, anything else that differs is refused.
+  const auto refused =
+      predict(fieldOf(body, unseen, unseen.drops[0]), body.embedding, {.gamma = 2 * params.gamma});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().what.find("γ ("), std::string::npos);
 }
 
 }  // namespace
