@@ -117,8 +117,7 @@ void addElements(Builder& node) {
       "elements", &Params::elements,
       {{"linear", ElementOrder::Linear}, {"quadratic", ElementOrder::Quadratic}},
       "linear: a node at every corner of a tetrahedron; quadratic: one more in the middle of every edge, for "
-      "some "
-      "forty times the time and memory on the same tetrahedra, and bodies that bend are no longer too stiff");
+      "some fifteen times the time on the same tetrahedra, and bodies that bend are no longer too stiff");
 }
 
 void addContact(Builder& node) {
@@ -148,7 +147,7 @@ void addContact(Builder& node) {
 NodeType simulateNode() {
   Builder node("Simulate", 1,
                "Moves the body until it is first hit, and gives the strain energy of that hit.");
-  node.implementation(2);
+  node.implementation(3);
   node.input<TetMesh>("body", "the body that is dropped or hit");
   addScene(node);
   addBall(node);
