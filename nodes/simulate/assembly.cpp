@@ -77,10 +77,11 @@ Mat3 elementBlock(const ElementGradients& g, std::size_t i, std::size_t j, doubl
   return sum;
 }
 
-void addElements(BlockMatrix& k, const Elements& elements, std::span<const Vec3> nodes,
-                 std::span<const double> weight, double mu, const VolumetricSplit& lambda) {
+void addElements(BlockMatrix& k, const Elements& elements, const ElementRules& rules,
+                 std::span<const Vec3> nodes, std::span<const double> weight, double mu,
+                 const VolumetricSplit& lambda) {
   for (std::size_t t = 0; t < weight.size(); ++t) {
-    const ElementGradients g(Element(nodes, elements.mesh().tets[t]), elements.order());
+    const ElementGradients g = rules.gradients(nodes, t);
     const std::span<const Index> own = elements.nodesOf(t);
     for (std::size_t i = 0; i < own.size(); ++i)
       for (std::size_t j = 0; j < own.size(); ++j)
@@ -164,20 +165,21 @@ NodalAverages::NodalAverages(const TetMesh& mesh, std::span<const double> weight
     }
 }
 
-BlockMatrix assembleStiffness(const Elements& elements, std::span<const Vec3> nodes,
-                              std::span<const double> weight, double mu, const VolumetricSplit& lambda) {
+BlockMatrix assembleStiffness(const Elements& elements, const ElementRules& rules,
+                              std::span<const Vec3> nodes, std::span<const double> weight, double mu,
+                              const VolumetricSplit& lambda) {
   const bool nodal = lambda.averaged > 0 && elements.order() == ElementOrder::Linear;
   Pattern pattern(elements.nodeCount());
   for (std::size_t t = 0; t < weight.size(); ++t) pattern.join(elements.nodesOf(t));
   if (!nodal) {
     BlockMatrix k = pattern.matrix();
-    addElements(k, elements, nodes, weight, mu, lambda);
+    addElements(k, elements, rules, nodes, weight, mu, lambda);
     return k;
   }
   const NodalAverages averages(elements.mesh(), weight);
   for (std::size_t n = 0; n < elements.nodeCount(); ++n) pattern.join(ringOf(elements.mesh(), averages, n));
   BlockMatrix k = pattern.matrix();
-  addElements(k, elements, nodes, weight, mu, lambda);
+  addElements(k, elements, rules, nodes, weight, mu, lambda);
   addNodalAverages(k, elements.mesh(), averages, nodes, weight, lambda.averaged);
   return k;
 }

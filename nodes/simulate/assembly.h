@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "simulate/element_rules.h"
 #include "simulate/elements.h"
 #include "simulate/sparse_cholesky.h"
 #include "types/tet_mesh.h"
@@ -30,8 +31,9 @@ struct NodalAverages {
 /// Σ_t w_t K_t for E = 1, `weight` per tetrahedron being the volume that counts, over the mesh's `nodes` (in
 /// any unit). The averaged part of λ (VolumetricSplit) acts on the element's mean volume strain if elements
 /// are quadratic, on θ_n of NodalAverages if linear: the latter couples the nodes of two adjoining rings.
-BlockMatrix assembleStiffness(const Elements& elements, std::span<const Vec3> nodes,
-                              std::span<const double> weight, double mu, const VolumetricSplit& lambda);
+BlockMatrix assembleStiffness(const Elements& elements, const ElementRules& rules,
+                              std::span<const Vec3> nodes, std::span<const double> weight, double mu,
+                              const VolumetricSplit& lambda);
 
 /// Adds six springs to the diagonal blocks that hold the part of `members` against rigid motion and nothing
 /// else: all of the first of three nodes, the second across the line to it, the third across the three

@@ -1,6 +1,7 @@
 #include "simulate/elements.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/tet_edges.h"
 
@@ -74,24 +75,53 @@ Eigen::MatrixXd elementMass(ElementOrder order) {
   return mass / 420;
 }
 
+ElementRule wholeRule() {
+  ElementRule rule;
+  for (std::size_t q = 0; q < 4; ++q) {
+    rule[q].setConstant(kFar);
+    rule[q][static_cast<Eigen::Index>(q)] = kNear;
+  }
+  return rule;
+}
+
+ElementRule ruleOf(const Eigen::Matrix4d& products) {
+  // P Pᵀ / 4 = products, by Cholesky's factorization with pivots: parts that are hardly more than a point
+  // have products of lower rank.
+  constexpr double kNothing = 1e-14;
+  Eigen::Matrix4d rest = products * (4 / products.sum());
+  ElementRule rule;
+  for (Vec4& column : rule) {
+    Eigen::Index pivot = 0;
+    const double largest = rest.diagonal().maxCoeff(&pivot);
+    column = largest > kNothing ? Vec4(rest.col(pivot) / std::sqrt(largest)) : Vec4::Zero();
+    rest -= column * column.transpose();
+  }
+  return rule;
+}
+
 ElementGradients::ElementGradients(const Element& linear, ElementOrder order)
     : points_(order == ElementOrder::Linear ? 1 : 4), nodes_(order == ElementOrder::Linear ? 4 : 10) {
-  const std::array<Vec3, 4>& g = linear.gradient;
-  if (order == ElementOrder::Linear) {
-    std::copy(g.begin(), g.end(), gradient_[0].begin());
-    std::copy(g.begin(), g.end(), mean_.begin());
+  if (order == ElementOrder::Quadratic) {
+    *this = ElementGradients(linear, wholeRule());
     return;
   }
+  std::copy(linear.gradient.begin(), linear.gradient.end(), gradient_[0].begin());
+  std::copy(linear.gradient.begin(), linear.gradient.end(), mean_.begin());
+}
+
+ElementGradients::ElementGradients(const Element& linear, const ElementRule& rule) : points_(4), nodes_(10) {
+  const std::array<Vec3, 4>& g = linear.gradient;
+  std::fill(mean_.begin(), mean_.end(), Vec3::Zero());
   for (std::size_t q = 0; q < 4; ++q) {
-    const auto xi = [q](std::size_t i) { return i == q ? kNear : kFar; };
-    for (std::size_t i = 0; i < 4; ++i) gradient_[q][i] = (4 * xi(i) - 1) * g[i];
+    const double one = rule[q].sum();
+    const auto xi = [&](std::size_t i) { return rule[q][static_cast<Eigen::Index>(i)]; };
+    for (std::size_t i = 0; i < 4; ++i) gradient_[q][i] = (4 * xi(i) - one) * g[i];
     for (std::size_t e = 0; e < 6; ++e) {
       const std::size_t a = corner(e, 0), b = corner(e, 1);
       gradient_[q][4 + e] = 4 * (xi(a) * g[b] + xi(b) * g[a]);
     }
+    for (std::size_t i = 0; i < 10; ++i) mean_[i] += weight() * one * gradient_[q][i];
   }
-  for (std::size_t i = 0; i < 4; ++i) mean_[i].setZero();
-  for (std::size_t e = 0; e < 6; ++e) mean_[4 + e] = g[corner(e, 0)] + g[corner(e, 1)];
 }
 
 Mat3 ElementGradients::strain(std::size_t point, std::span<const Vec3> u,

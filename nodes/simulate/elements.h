@@ -51,11 +51,23 @@ class Elements {
 /// ∫ N_i N_j / V of one element, in the order of nodesOf.
 Eigen::MatrixXd elementMass(ElementOrder order);
 
+/// Four points of one weight that integrate the products of two linear functions over (a part of) a
+/// tetrahedron: in barycentric coordinates, which need not add up to 1 (a function's value is then Σ ξ_i f_i,
+/// f_i its corners').
+using ElementRule = std::array<Vec4, 4>;
+
+/// Over the whole of it.
+ElementRule wholeRule();
+/// From ∫ ξ_i ξ_j / V, up to a factor: the products are then means.
+ElementRule ruleOf(const Eigen::Matrix4d& products);
+
 /// One element: the gradients of its shape functions at the points that integrate its energy exactly (one,
-/// or four with the weight 1/4 each).
+/// or the four of a rule with the weight 1/4 each).
 class ElementGradients {
  public:
   ElementGradients(const Element& linear, ElementOrder order);
+  /// A quadratic one.
+  ElementGradients(const Element& linear, const ElementRule& rule);
 
   std::size_t points() const { return points_; }
   std::size_t nodes() const { return nodes_; }

@@ -8,10 +8,12 @@
 
 namespace sherd {
 
-/// Halves the nodes by a plane across their longest extent, orders both halves in the same way, and puts last
-/// those nodes of one half that touch the other; sets of a few dozen nodes are left as they are. A pure
-/// function of its arguments, unlike METIS, whose random numbers all threads share. Returns the nodes in
-/// order. Cost O(n log² n).
+/// Sorts the nodes along each axis and along the mesh's own edges from one end to the other (which a plane
+/// cannot do for a body with legs), cuts the order that has the least border where that is, makes the border
+/// smaller (separator.h), puts it last and orders both sides in the same way; sets of a few dozen nodes are
+/// left as they are. The factor is about as small as METIS makes it, and this is a pure function of its
+/// arguments, unlike METIS, whose random numbers all threads share. Returns the nodes in order. Cost
+/// O(n log² n).
 std::vector<Index> nestedDissection(std::span<const Vec3> positions, const BlockMatrix& graph);
 
 }  // namespace sherd

@@ -26,7 +26,7 @@ namespace sherd {
 
 struct SimulateParams : RigidParams {
   double threshold = 0;  ///< N·s, ≥ 0: a hit whose impulses add up to less deforms nothing
-  /// Quadratic ones cost some forty times as much on the same tetrahedra and are worth it where energies
+  /// Quadratic ones cost some fifteen times as much on the same tetrahedra and are worth it where energies
   /// matter to a few per cent: in bending, linear ones are too stiff unless several lie across the thickness.
   ElementOrder elements = ElementOrder::Linear;
 };

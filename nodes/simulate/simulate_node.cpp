@@ -117,8 +117,7 @@ void addElements(Builder& node) {
       "elements", &Params::elements,
       {{"linear", ElementOrder::Linear}, {"quadratic", ElementOrder::Quadratic}},
       "linear: a node at every corner of a tetrahedron; quadratic: one more in the middle of every edge, for "
-      "some "
-      "forty times the time and memory on the same tetrahedra, and bodies that bend are no longer too stiff");
+      "some fifteen times the time on the same tetrahedra, and bodies that bend are no longer too stiff");
 }
 
 void addContact(Builder& node) {

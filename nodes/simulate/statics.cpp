@@ -101,13 +101,15 @@ Result<Statics> Statics::factor(std::shared_ptr<const TetMesh> mesh, const Stati
 
   const auto elements = std::make_shared<const Elements>(mesh, params.elements);
   std::vector<double> stiffnessVolume = stiffnessShares(*elements), volume;
+  ElementRules rules(*elements, stiffnessVolume, exec);
+  if (exec.cancelled()) return cancelledError();
   for (std::size_t t = 0; t < mesh->tets.size(); ++t) {
     volume.push_back(Element(nodes, mesh->tets[t]).volume);
     stiffnessVolume[t] *= volume[t];
   }
   const Lame lame(params.poissonRatio);
   const VolumetricSplit split(lame, params.largestFull);
-  BlockMatrix stiffness = assembleStiffness(*elements, nodes, stiffnessVolume, lame.mu, split);
+  BlockMatrix stiffness = assembleStiffness(*elements, rules, nodes, stiffnessVolume, lame.mu, split);
   addGauges(stiffness, nodes, partOf, partCount, params.gaugeNode);
   if (exec.cancelled()) return cancelledError();
   std::vector<Vec3> positions = elements->positions(nodes);
@@ -115,7 +117,7 @@ Result<Statics> Statics::factor(std::shared_ptr<const TetMesh> mesh, const Stati
   if (exec.cancelled()) return cancelledError();
   SHERD_ASSIGN(SparseCholesky cholesky, SparseCholesky::factor(stiffness, order));
 
-  Statics statics(elements, std::move(cholesky));
+  Statics statics(elements, std::move(rules), std::move(cholesky));
   statics.size_ = size;
   statics.lame_ = lame;
   statics.split_ = split;
@@ -257,7 +259,7 @@ std::vector<Statics::Response> Statics::respond(std::span<const std::vector<Vec3
     if (!averages_.empty()) theta[i] = nodalDilatation(*u[i]);
   }
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    const ElementGradients g(Element(nodes_, mesh.tets[t]), elements_->order());
+    const ElementGradients g = rules_.gradients(nodes_, t);
     for (std::size_t i = 0; i < u.size(); ++i) addElement(t, g, *u[i], theta[i], out[i]);
   }
   return out;

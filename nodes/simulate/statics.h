@@ -2,10 +2,10 @@
 // 2014, section 2.3).
 //
 // Linear or quadratic tetrahedra (elements.h) of an isotropic material:
-//   K u = f,  energy per tetrahedron  ½ uᵀ K_t u = f_t ∫ W(ε) dV,
+//   K u = f,  energy per tetrahedron  ½ uᵀ K_t u = ∫ W(ε) dV,
 //   W(ε) = λ/2 tr(ε)² + μ ε:ε,  λ = E ν / ((1 + ν)(1 − 2ν)),  μ = E / (2 (1 + ν)),
-// where f_t is the share of the tetrahedron inside the surface: what is outside has neither
-// stiffness nor mass.
+// over the part of the tetrahedron inside the surface (element_rules.h): what is outside has no stiffness.
+// Mass is the inside's too, spread evenly over the tetrahedron.
 //
 // Nearly incompressible materials. As ν → ½, λ grows without bound, and elements that cannot keep their
 // volume at every point while they bend lock. Beyond ν = 0.4 the surplus of λ (VolumetricSplit) therefore
@@ -127,8 +127,8 @@ class Statics {
     int steps = 0;
   };
 
-  Statics(std::shared_ptr<const Elements> elements, SparseCholesky cholesky)
-      : elements_(std::move(elements)), cholesky_(std::move(cholesky)) {}
+  Statics(std::shared_ptr<const Elements> elements, ElementRules rules, SparseCholesky cholesky)
+      : elements_(std::move(elements)), rules_(std::move(rules)), cholesky_(std::move(cholesky)) {}
   void setMass(Index partCount);
   std::vector<Wrench> wrenches(std::span<const Vec3> force) const;
   std::vector<Vec3> inertialForce(const std::vector<Wrench>& acceleration) const;
@@ -145,6 +145,7 @@ class Statics {
   StaticSolution finished(Progress progress, std::span<const Vec3> force, double youngModulus) const;
 
   std::shared_ptr<const Elements> elements_;
+  ElementRules rules_;
   SparseCholesky cholesky_;
   double size_ = 1;
   Lame lame_{0, 0};  ///< for E = 1

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "base/parallel.h"
+#include "geometry/clipping.h"
 #include "geometry/surface_tree.h"
-#include "tetrahedralize/clipping.h"
 
 namespace sherd {
 namespace {

@@ -13,17 +13,8 @@ namespace sherd {
 void holdTriangles(TetMesh& cage, std::span<const Vec3> positions, std::span<const Triangle> triangles,
                    const Exec& exec);
 
-/// Fills insideFraction from held: the volume of (solid ∩ tetrahedron), by the divergence theorem, three
-/// times.
-///
-///   3 V(S ∩ T) = Σ over surface triangles clipped to T of ∫ (x − p)·n dA + h A(S ∩ F)
-///   2 A(S ∩ F) = Σ over segments of the surface in F of ∫ (x − q)·m ds + k L(S ∩ E)
-///     L(S ∩ E) = Σ over crossings of E of ± their distance from r + [other end inside] |E|
-///
-/// with p a corner of T, F the face opposite p and h its distance, q a corner of F, E the edge of F opposite
-/// q and k its distance, r an end of E: faces through p, edges through q and the end r contribute nothing.
-/// Exact up to rounding; which segments and crossings there are is decided so that neighbouring triangles
-/// agree. Needs a cage that encloses the surface.
+/// Fills insideFraction from held, by geometry/tet_share.h: exact up to rounding. Needs a cage that encloses
+/// the surface.
 void fillInsideFractions(TetMesh& cage, std::span<const Vec3> positions, std::span<const Triangle> triangles,
                          const Exec& exec);
 

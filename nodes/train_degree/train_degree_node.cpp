@@ -224,7 +224,7 @@ void addDrop(Builder& node) {
        .help = "of the patch that the force acts on; 0: Hertz's, but at least 3 % of the body's size"});
   node.choice("elements", &Params::elements,
               {{"linear", ElementOrder::Linear}, {"quadratic", ElementOrder::Quadratic}},
-              "as in Simulate: quadratic ones cost some forty times as much on the same tetrahedra");
+              "as in Simulate: quadratic ones cost some fifteen times as much on the same tetrahedra");
 }
 
 }  // namespace

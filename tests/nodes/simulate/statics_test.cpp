@@ -6,7 +6,6 @@
 
 #include "base/rng.h"
 #include "simulate/assembly.h"
-#include "simulate/nested_dissection.h"
 #include "simulate/statics.h"
 #include "support/elastic_loads.h"
 
@@ -69,22 +68,6 @@ TEST(Statics, RefusesAHinge) {
   const Result<Statics> hinge = Statics::factor(shared(mesh), {kPoisson}, {});
   ASSERT_FALSE(hinge.ok());
   EXPECT_NE(hinge.error().text().find("hang together by faces"), std::string::npos);
-}
-
-TEST(NestedDissection, OrdersEveryNodeOnceAndKeepsTheFactorSmall) {
-  const Shared mesh = shared(box(12, 12, 12, Vec3(1, 1, 1)));
-  const std::vector<double> weight(mesh->tets.size(), 1.0);
-  BlockMatrix stiffness = assembleStiffness(Elements(mesh, ElementOrder::Linear), mesh->nodes, weight,
-                                            Lame(kPoisson).mu, VolumetricSplit(Lame(kPoisson)));
-  std::vector<Index> order = nestedDissection(mesh->nodes, stiffness), asNumbered(order.size());
-  std::iota(asNumbered.begin(), asNumbered.end(), 0);
-  addGauge(stiffness, mesh->nodes, asNumbered, -1);
-  const Result<SparseCholesky> good = SparseCholesky::factor(stiffness, order);
-  const Result<SparseCholesky> banded = SparseCholesky::factor(stiffness, asNumbered);
-  ASSERT_TRUE(good.ok() && banded.ok());
-  EXPECT_LT(good->factorSize(), 0.8 * banded->factorSize());
-  std::sort(order.begin(), order.end());
-  EXPECT_EQ(order, asNumbered);
 }
 
 TEST(Statics, CancellingIsAnError) {
