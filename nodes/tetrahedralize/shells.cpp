@@ -170,6 +170,12 @@ Counts countsOf(const std::vector<std::pair<bool, int>>& topology) {
 
 }  // namespace
 
+bool joinsNoBodies(const std::vector<std::pair<bool, int>>& got,
+                   const std::vector<std::pair<bool, int>>& wanted) {
+  const Counts a = countsOf(got), b = countsOf(wanted);
+  return a.components == b.components && a.voids >= b.voids;
+}
+
 int topologyDifference(const std::vector<std::pair<bool, int>>& got,
                        const std::vector<std::pair<bool, int>>& wanted) {
   const Counts a = countsOf(got), b = countsOf(wanted);

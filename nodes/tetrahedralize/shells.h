@@ -32,6 +32,9 @@ std::size_t countContacts(std::span<const Vec3> positions);
 /// may each of them have joined two components or closed a handle.
 bool enclosesTopology(const std::vector<std::pair<bool, int>>& got,
                       const std::vector<std::pair<bool, int>>& wanted, std::size_t contacts);
+/// As many components, and no void filled?
+bool joinsNoBodies(const std::vector<std::pair<bool, int>>& got,
+                   const std::vector<std::pair<bool, int>>& wanted);
 /// How many shells and handles there are too many or too few.
 int topologyDifference(const std::vector<std::pair<bool, int>>& got,
                        const std::vector<std::pair<bool, int>>& wanted);

@@ -20,6 +20,7 @@ constexpr double kCountTolerance = 0.1;  ///< of the number of tetrahedra, that 
 constexpr int kSearchRuns = 4;           ///< runs of Mesh_3 for the number of tetrahedra
 constexpr int kTries = 5;                ///< further ones for enclosure, topology and gaps
 constexpr std::size_t kPatience = 3;     ///< of these, that may fail to halve what topology is off by
+constexpr int kFew = 3;                  ///< handles and shells: another try may mend these
 constexpr double kMoreTets = 4;          ///< times as many where none of these gave a cage
 constexpr int kEmptyRuns = 6;            ///< runs of Mesh_3 that may find nothing to fill, each with …
 constexpr double kShorterEdge = 0.75;    ///< … so much shorter edges than the one before
@@ -60,7 +61,7 @@ class CageBuilder {
 
   Result<TetMesh> build() {
     SHERD_ASSIGN(std::optional<TetMesh> cage, attempt());
-    if (!cage && !bridgesAreNarrow_) {
+    if (!cage && !bridgesAreNarrow_ && !isSpareNear()) {
       // What is thin or near to another part of the surface at this resolution is less so at a higher one.
       exec_.info("meshing again with more tetrahedra: " + problem_->what);
       params_.tets = static_cast<int>(std::min(kMoreTets * params_.tets, kMostAskedFor));
@@ -69,6 +70,13 @@ class CageBuilder {
       smallGapsToo_ = false;
       SHERD_ASSIGN(cage, attempt());
     }
+    if (!cage && spare_) {
+      exec_.warn(
+          fmt::format("the cage has {} where the surface has {}: it bridges gaps and holes that are "
+                      "smaller than its edges",
+                      describeTopology(spareTopology_), describeTopology(wanted_)));
+      cage = std::move(spare_);
+    }
     if (!cage) return *problem_;
     return finish(std::move(*cage));
   }
@@ -76,10 +84,12 @@ class CageBuilder {
  private:
   /// Is topology off by much, and by more than half of what it was off by `kPatience` tries before?
   bool isHopeless() const {
-    constexpr int few = 3;  // another try may mend these
     const std::size_t n = offBy_.size();
-    return n > kPatience && offBy_[n - 1] > std::max(few, offBy_[n - 1 - kPatience] / 2);
+    return n > kPatience && offBy_[n - 1] > std::max(kFew, offBy_[n - 1 - kPatience] / 2);
   }
+
+  /// Is there a cage that bridges so little that it is not worth four times the tetrahedra?
+  bool isSpareNear() const { return spare_ && topologyDifference(spareTopology_, wanted_) <= kFew; }
 
   /// A cage as promised, or none, and problem_ says why not.
   Result<std::optional<TetMesh>> attempt() {
@@ -132,8 +142,10 @@ class CageBuilder {
   void chooseGaps() {
     sizes_.open.clear();
     for (const Gap& gap : gaps_)
-      if (gap.detour > std::max((smallGapsToo_ ? 0.3 : 1.0) * nominal_, 1.3 * gap.width))
-        sizes_.open.push_back(gap);
+      if (isWorthOpening(gap, smallGapsToo_ ? 0.3 : 1)) sizes_.open.push_back(gap);
+  }
+  bool isWorthOpening(const Gap& gap, double edges) const {
+    return gap.detour > std::max(edges * nominal_, 1.3 * gap.width);
   }
 
   std::string gapText(const Gap& gap) const {
@@ -212,14 +224,33 @@ class CageBuilder {
   Result<bool> verify(TetMesh& cage) {
     auto shells = splitShells(cage.nodes, cage.boundary);
     if (!shells.ok()) return wantMore(failure("the cage's boundary is no manifold: " + shells.error().what));
-    if (const auto got = topologyOf(*shells); !enclosesTopology(got, wanted_, contacts_))
+    if (const auto got = topologyOf(*shells); !enclosesTopology(got, wanted_, contacts_)) {
+      keepAsSpare(cage, got);
       return wantTopology(cage, got);
+    }
     std::vector<Breach> breaches =
         findBreaches(cage, mesh_->positions, mesh_->triangles, surface_.shells, exec_);
     breaches =
         pushOutward(cage, std::move(breaches), mesh_->positions, mesh_->triangles, surface_.shells, exec_);
     if (!breaches.empty()) return wantEnclosure(cage, breaches);
     return wantOpenGaps(cage);
+  }
+
+  /// A cage that keeps apart what is apart by more than an edge serves where no better one comes.
+  void keepAsSpare(TetMesh cage, const std::vector<std::pair<bool, int>>& got) {
+    if (!joinsNoBodies(got, wanted_)) return;
+    if (spare_ && topologyDifference(got, wanted_) >= topologyDifference(spareTopology_, wanted_)) return;
+    std::vector<Breach> breaches =
+        findBreaches(cage, mesh_->positions, mesh_->triangles, surface_.shells, exec_);
+    breaches =
+        pushOutward(cage, std::move(breaches), mesh_->positions, mesh_->triangles, surface_.shells, exec_);
+    if (!breaches.empty() || exec_.cancelled()) return;
+    std::vector<Gap> gaps;
+    for (const Gap& gap : gaps_)
+      if (isWorthOpening(gap, 1)) gaps.push_back(gap);
+    if (!closedGaps(cage, gaps).empty()) return;
+    spare_ = std::move(cage);
+    spareTopology_ = got;
   }
 
   bool wantMore(Error problem) {
@@ -343,6 +374,8 @@ class CageBuilder {
   std::optional<Error> problem_;
   std::vector<int> offBy_;  ///< what topology was off by, each time that it was
   bool bridgesAreNarrow_ = false;
+  std::optional<TetMesh> spare_;  ///< with other handles or voids than the surface, but sound
+  std::vector<std::pair<bool, int>> spareTopology_;
 };
 
 }  // namespace
