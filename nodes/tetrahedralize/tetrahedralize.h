@@ -21,7 +21,9 @@
 //    boundary, every shell lies inside; the boundary is a 2-manifold with the surface's components, shells
 //    and Euler characteristics; the gaps are open. Where the surface comes through, boundary nodes are pushed
 //    outward; where that does not do, the place is meshed more finely and all is done again.
-//    Where all that gives no cage, everything is done once more with four times as many tetrahedra.
+//    Where all that gives no cage, everything is done once more with four times as many tetrahedra. Where
+//    Mesh_3 sees nothing to fill, since the body is thinner than its starting points are apart, edges are
+//    made shorter until it does.
 //
 // Parts of the surface may touch in a point or along an edge, each with vertices of its own there (as
 // SelectPiece makes them): the cage joins them, so there its topology may be that of the joined parts.
@@ -49,10 +51,11 @@ struct TetrahedralizeParams {
 /// All fields of the result are filled. Nodes are ordered along a space-filling curve. The sum of
 /// insideFraction · volume equals the surface's volume up to rounding (quality.volumeError).
 ///
-/// Errors: more than 5 million tetrahedra asked for; an empty, open, non-manifold or inside-out surface or
-/// one with NaN; a gap that cannot be kept open, with its place (m) and width (m); a surface that could not
-/// be enclosed, with the place. Deterministic: the same input gives the same bits for any number of threads.
-/// Cost: a few Mesh_3 runs of O(tets) each (about a second for 5,000), plus O(triangles log triangles).
+/// Errors: more than 5 million tetrahedra asked for; edges that no tetrahedron of the body has room for; an
+/// empty, open, non-manifold or inside-out surface or one with NaN; a gap that cannot be kept open, with its
+/// place (m) and width (m); a surface that could not be enclosed, with the place. Deterministic: the same
+/// input gives the same bits for any number of threads. Cost: a few Mesh_3 runs of O(tets) each (about a
+/// second for 5,000), plus O(triangles log triangles).
 Result<TetMesh> tetrahedralize(std::shared_ptr<const TriMesh> surface, const TetrahedralizeParams& params,
                                const Exec& exec);
 
