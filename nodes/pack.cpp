@@ -4,6 +4,7 @@
 namespace sherd {
 
 NodeType loadMeshNode();
+NodeType loadPictureNode();
 NodeType repairNode();
 NodeType tetrahedralizeNode();
 NodeType warpRestNode();
@@ -30,10 +31,10 @@ NodeType contactSheetNode();
 
 }  // namespace sherd
 
-SHERD_NODE_PACK(sherd::loadMeshNode, sherd::repairNode, sherd::tetrahedralizeNode, sherd::warpRestNode,
-                sherd::embedNode, sherd::protectNode, sherd::simulateNode, sherd::readVdbNode,
-                sherd::paintBetaNode, sherd::writeVdbNode, sherd::weightsNode, sherd::trainDegreeNode,
-                sherd::pinSitesNode, sherd::predictDegreeNode, sherd::calibrateToughnessNode, sherd::cvdNode,
-                sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
-                sherd::exportCrackSurfaceNode, sherd::exportPiecesNode, sherd::exportProxiesNode,
-                sherd::previewNode, sherd::contactSheetNode)
+SHERD_NODE_PACK(sherd::loadMeshNode, sherd::loadPictureNode, sherd::repairNode, sherd::tetrahedralizeNode,
+                sherd::warpRestNode, sherd::embedNode, sherd::protectNode, sherd::simulateNode,
+                sherd::readVdbNode, sherd::paintBetaNode, sherd::writeVdbNode, sherd::weightsNode,
+                sherd::trainDegreeNode, sherd::pinSitesNode, sherd::predictDegreeNode,
+                sherd::calibrateToughnessNode, sherd::cvdNode, sherd::tessellateNode, sherd::selectPieceNode,
+                sherd::convexProxiesNode, sherd::exportCrackSurfaceNode, sherd::exportPiecesNode,
+                sherd::exportProxiesNode, sherd::previewNode, sherd::contactSheetNode)

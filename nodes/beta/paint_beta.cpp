@@ -51,9 +51,10 @@ Result<void> checkParams(const Params& params) {
 }
 
 Result<void> checkSource(const Inputs& in, const Params& params) {
-  if (params.source == PaintSource::Texture)
-    return failure("textures can't be painted from: a mesh holds UVs and names of materials, but no pictures",
-                   "bake the texture into vertex colours and say \"source\": \"colors\"", "source");
+  if (params.source == PaintSource::Texture) {
+    const auto texture = findTexture(in.mesh, in.texture, params);
+    if (!texture.ok()) return texture.error();
+  }
   if (params.source == PaintSource::Colors) {
     const auto colors = findColors(in.mesh, params);
     if (!colors.ok()) return colors.error();
@@ -91,7 +92,7 @@ double extentOf(const Inputs& in) {
 Lengths lengthsOf(const Inputs& in, const Params& params) {
   Lengths lengths{params.band, params.noiseSize, params.voxel};
   double smallest = std::numeric_limits<double>::infinity();
-  if (params.source == PaintSource::Colors) {
+  if (params.source == PaintSource::Colors || params.source == PaintSource::Texture) {
     if (lengths.band == 0) lengths.band = extentOf(in) / 32;
     smallest = std::min(smallest, lengths.band);
   }
@@ -156,6 +157,8 @@ Result<void> paintAll(Canvas& canvas, const Inputs& in, const Params& params, co
   exec.progress(0.2);
   if (params.source == PaintSource::Colors)
     SHERD_CHECK(paintColors(canvas, *in.mesh, params, lengths.band, exec));
+  if (params.source == PaintSource::Texture)
+    SHERD_CHECK(paintTexture(canvas, *in.mesh, *in.texture, params, lengths.band, exec));
   if (params.source == PaintSource::Noise)
     SHERD_CHECK(paintNoise(canvas, in.mesh, params, lengths.noiseSize, exec));
   exec.progress(0.5);

@@ -8,14 +8,14 @@ namespace {
 using Params = PaintBetaParams;
 
 void addSource(NodeBuilder<Params>& node) {
-  node.choice(
-          "source", &Params::source,
-          {{"none", PaintSource::None},
-           {"colors", PaintSource::Colors},
-           {"texture", PaintSource::Texture},
-           {"noise", PaintSource::Noise}},
-          "what is painted before the strokes: colors: the mesh's vertex colours, near its surface; noise; "
-          "texture: refused, since meshes hold no pictures")
+  node.choice("source", &Params::source,
+              {{"none", PaintSource::None},
+               {"colors", PaintSource::Colors},
+               {"texture", PaintSource::Texture},
+               {"noise", PaintSource::Noise}},
+              "what is painted before the strokes: colors: the mesh's vertex colours, near its surface; "
+              "texture: the "
+              "picture wired to it, by the mesh's texture coordinates; noise")
       .choice("blend", &Params::blend,
               {{"replace", Blend::Replace},
                {"add", Blend::Add},
@@ -32,12 +32,15 @@ void addSource(NodeBuilder<Params>& node) {
                {"green", ColorChannel::Green},
                {"blue", ColorChannel::Blue},
                {"alpha", ColorChannel::Alpha}},
-              "of the vertex colours")
+              "of the vertex colours or the texture (which has no alpha)")
       .text("color_set", &Params::colorSet, "name of the vertex colours; empty: the first")
-      .number("band", &Params::band,
-              {.unit = "m",
-               .min = 0,
-               .help = "how far from the surface colours reach; 0: a 32nd of the mesh's diagonal"})
+      .text("uv_set", &Params::uvSet, "name of the texture coordinates; empty: the first")
+      .text("material", &Params::material, "name of the material that the texture lies on; empty: on all")
+      .number(
+          "band", &Params::band,
+          {.unit = "m",
+           .min = 0,
+           .help = "how far from the surface colours and texture reach; 0: a 32nd of the mesh's diagonal"})
       .number("noise_size", &Params::noiseSize,
               {.unit = "m",
                .min = 0,
@@ -50,13 +53,15 @@ void addSource(NodeBuilder<Params>& node) {
 NodeType paintBetaNode() {
   NodeBuilder<Params> node(
       "PaintBeta", 1,
-      "Paints a field such as fragility β on a sparse grid: from strokes, vertex colours, noise and "
+      "Paints a field such as fragility β on a sparse grid: from strokes, vertex colours, a texture, noise "
+      "and "
       "other grids. Does in this order what its parameters ask for: `grid` or the background, "
       "`other`, the source, strokes, smoothing, a threshold.");
   node.optionalInput<ScalarGrid>("grid", "what is painted on; left open: the background everywhere")
       .optionalInput<ScalarGrid>("other", "a field to combine with it, by `blend`")
       .optionalInput<TriMesh>("mesh",
                               "has the vertex colours; noise lies in it; a new grid has its axes and unit")
+      .optionalInput<Picture>("texture", "the picture that source: texture paints by, from LoadPicture")
       .list("strokes", &Params::strokes, &readStrokes,
             "dabs and lines, in metres, y up, painted in their order: { \"points\": [[x, y, z], …], "
             "\"radius\": m, "
@@ -81,7 +86,9 @@ NodeType paintBetaNode() {
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         const auto grid = io.in<ScalarGrid>("grid"), other = io.in<ScalarGrid>("other");
         const auto mesh = io.in<TriMesh>("mesh");
-        SHERD_ASSIGN(ScalarGrid painted, paintBeta({grid.get(), other.get(), mesh.get()}, params, io.exec()));
+        const auto texture = io.in<Picture>("texture");
+        SHERD_ASSIGN(ScalarGrid painted,
+                     paintBeta({grid.get(), other.get(), mesh.get(), texture.get()}, params, io.exec()));
         io.out("grid", std::move(painted));
         return {};
       });

@@ -1,108 +1,8 @@
 #include <fmt/format.h>
 
 #include "beta/layers.h"
-#include "geometry/box_tree.h"
-#include "geometry/point_triangle.h"
 
 namespace sherd {
-namespace {
-
-/// Weights of a triangle's corners at one of its points; of a flat triangle, at its nearest corner.
-Vec3 weightsAt(const std::array<Vec3, 3>& corners, const Vec3& p) {
-  const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-  if (normal.squaredNorm() > 0) {
-    const double b = normal.dot((p - corners[0]).cross(corners[2] - corners[0])) / normal.squaredNorm();
-    const double c = normal.dot((corners[1] - corners[0]).cross(p - corners[0])) / normal.squaredNorm();
-    return {1 - b - c, b, c};
-  }
-  Eigen::Index nearest = 0;
-  Vec3((p - corners[0]).squaredNorm(), (p - corners[1]).squaredNorm(), (p - corners[2]).squaredNorm())
-      .minCoeff(&nearest);
-  return Vec3::Unit(nearest);
-}
-
-class ColoredSurface {
- public:
-  ColoredSurface(const TriMesh& mesh, const TriMesh::ColorSet& colors, ColorChannel channel)
-      : mesh_(mesh), colors_(colors), channel_(static_cast<Eigen::Index>(channel)) {
-    for (const Triangle& t : mesh.triangles) {
-      boxes_.emplace_back();
-      for (const Index v : t) boxes_.back().add(mesh.positions[at(v)]);
-    }
-    tree_.emplace(boxes_);
-  }
-  std::span<const Box> boxes() const { return boxes_; }
-
-  /// Triangles that may lie within `band` of a point in the block, ascending.
-  std::vector<Index> near(const openvdb::Coord& block, const Lattice& lattice, double band) const {
-    const double reach = band + lattice.blockRadius();
-    const Vec3 centre = lattice.blockCentre(block);
-    Box box = lattice.blockBox(block);
-    box.low.array() -= band;
-    box.high.array() += band;
-    std::vector<Index> found;
-    tree_->visitOverlaps(box, [&](Index t) {
-      if (distance(centre, t) <= reach) found.push_back(t);
-    });
-    std::sort(found.begin(), found.end());
-    return found;
-  }
-  double distance(const Vec3& p, Index t) const {
-    const auto corners = cornersOf(t);
-    return (p - closestOnTriangle(p, corners[0], corners[1], corners[2])).norm();
-  }
-  /// The channel at the closest point of these triangles, in [0, 1]; nothing beyond `band`.
-  std::optional<double> channelAt(const Vec3& p, std::span<const Index> triangles, double band) const {
-    Index best = -1;
-    double least = band * band;
-    Vec3 point = Vec3::Zero();
-    for (const Index t : triangles) {
-      const Box& box = boxes_[at(t)];
-      if ((p - p.cwiseMax(box.low).cwiseMin(box.high)).squaredNorm() > least) continue;
-      const auto corners = cornersOf(t);
-      const Vec3 q = closestOnTriangle(p, corners[0], corners[1], corners[2]);
-      const double distance2 = (p - q).squaredNorm();
-      if (distance2 > least || (best >= 0 && distance2 == least)) continue;
-      best = t, least = distance2, point = q;
-    }
-    if (best < 0) return std::nullopt;
-    const Vec3 weights = weightsAt(cornersOf(best), point);
-    double value = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-      value += weights[static_cast<Eigen::Index>(c)] * colors_.rgba[3 * at(best) + c][channel_];
-    return std::clamp(value, 0.0, 1.0);
-  }
-
- private:
-  std::array<Vec3, 3> cornersOf(Index t) const {
-    const Triangle& v = mesh_.triangles[at(t)];
-    return {mesh_.positions[at(v[0])], mesh_.positions[at(v[1])], mesh_.positions[at(v[2])]};
-  }
-
-  const TriMesh& mesh_;
-  const TriMesh::ColorSet& colors_;
-  Eigen::Index channel_;
-  std::vector<Box> boxes_;
-  std::optional<BoxTree> tree_;
-};
-
-/// Blocks that have points within `band` of the surface.
-Blocks blocksAlong(const ColoredSurface& surface, const Lattice& lattice, double band, const Exec& exec) {
-  Blocks blocks;
-  const double reach = band + lattice.blockRadius();
-  for (std::size_t t = 0; t < surface.boxes().size() && !blocks.tooMany() && !exec.cancelled(); ++t) {
-    Box box = surface.boxes()[t];
-    box.low.array() -= band;
-    box.high.array() += band;
-    const Box index = lattice.indexBox(box);
-    blocks.add(index.low, index.high, [&](const openvdb::Coord& origin) {
-      return surface.distance(lattice.blockCentre(origin), static_cast<Index>(t)) <= reach;
-    });
-  }
-  return blocks;
-}
-
-}  // namespace
 
 Result<const TriMesh::ColorSet*> findColors(const TriMesh* mesh, const PaintBetaParams& params) {
   if (mesh == nullptr)
@@ -123,18 +23,14 @@ Result<const TriMesh::ColorSet*> findColors(const TriMesh* mesh, const PaintBeta
 Result<void> paintColors(Canvas& canvas, const TriMesh& mesh, const PaintBetaParams& params, double band,
                          const Exec& exec) {
   SHERD_ASSIGN(const TriMesh::ColorSet* colors, findColors(&mesh, params));
-  const ColoredSurface surface(mesh, *colors, params.channel);
-  const Lattice lattice = canvas.lattice();
-  const Blocks blocks = blocksAlong(surface, lattice, band, exec);
-  const auto colorIn = [&](const openvdb::Coord& origin) -> Canvas::Edit {
-    auto near = surface.near(origin, lattice, band);
-    return [&, near = std::move(near)](const openvdb::Coord& c, double value, bool) -> std::optional<double> {
-      const auto channel = surface.channelAt(lattice.metres(c), near, band);
-      if (!channel) return std::nullopt;
-      return blended(params.blend, value, params.low + *channel * (params.high - params.low));
-    };
+  const auto channel = static_cast<Eigen::Index>(params.channel);
+  const auto colorAt = [&](Index t, const Vec3& weights) -> std::optional<double> {
+    double value = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      value += weights[static_cast<Eigen::Index>(c)] * colors->rgba[3 * at(t) + c][channel];
+    return value;
   };
-  return canvas.edit(blocks, colorIn, exec);
+  return paintSurface(canvas, mesh, colorAt, params, band, exec);
 }
 
 }  // namespace sherd

@@ -23,6 +23,8 @@
 //    outward; where that does not do, the place is meshed more finely and all is done again.
 //    Where all that gives no cage, everything is done once more with four times as many tetrahedra, unless it
 //    was gaps that made edges short: where topology stays off by much, the end comes early.
+//    Where Mesh_3 sees nothing to fill, since the body is thinner than its starting points are apart, edges are
+//    made shorter until it does.
 // 5. Where no cage has the surface's topology, one serves that has other handles or further voids, but encloses
 //    the surface, has its components, and keeps open all gaps with a way round of more than an edge: it bridges
 //    notches and holes that are smaller than its edges, wholly or in part. A warning says so.
@@ -53,10 +55,11 @@ struct TetrahedralizeParams {
 /// All fields of the result are filled. Nodes are ordered along a space-filling curve. The sum of
 /// insideFraction · volume equals the surface's volume up to rounding (quality.volumeError).
 ///
-/// Errors: more than 5 million tetrahedra asked for; an empty, open, non-manifold or inside-out surface or
-/// one with NaN; a gap that cannot be kept open, with its place (m) and width (m); a surface that could not
-/// be enclosed, with the place. Deterministic: the same input gives the same bits for any number of threads.
-/// Cost: a few Mesh_3 runs of O(tets) each (about a second for 5,000), plus O(triangles log triangles).
+/// Errors: more than 5 million tetrahedra asked for; edges that no tetrahedron of the body has room for; an
+/// empty, open, non-manifold or inside-out surface or one with NaN; a gap that cannot be kept open, with its
+/// place (m) and width (m); a surface that could not be enclosed, with the place. Deterministic: the same
+/// input gives the same bits for any number of threads. Cost: a few Mesh_3 runs of O(tets) each (about a
+/// second for 5,000), plus O(triangles log triangles).
 Result<TetMesh> tetrahedralize(std::shared_ptr<const TriMesh> surface, const TetrahedralizeParams& params,
                                const Exec& exec);
 

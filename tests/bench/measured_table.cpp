@@ -51,9 +51,38 @@ std::string number(double value) {
 std::string scientific(double value) { return fmt::format("{:.1e}", value); }
 std::string count(std::size_t value) { return fmt::format("{}", value); }
 
+namespace {
+
+bool isNumber(const std::string& text) {
+  char* end = nullptr;
+  return !text.empty() && std::isfinite(std::strtod(text.c_str(), &end)) && *end == '\0';
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+  return out + "\"";
+}
+
+}  // namespace
+
 void Table::write(const std::filesystem::path& csv) const {
   std::ofstream out(csv);
   for (const auto& row : rows_) out << fmt::format("{}\n", fmt::join(row, ","));
+  std::ofstream json(std::filesystem::path(csv).replace_extension(".json"));
+  json << "[";
+  for (std::size_t r = 1; r < rows_.size(); ++r) {
+    json << (r > 1 ? ",\n {" : "\n {");
+    for (std::size_t c = 0; c < rows_[r].size(); ++c) {
+      const std::string& cell = rows_[r][c];
+      json << (c > 0 ? ", " : "") << quoted(rows_[0][c]) << ": "
+           << (cell.empty()     ? "null"
+               : isNumber(cell) ? cell
+                                : quoted(cell));
+    }
+    json << "}";
+  }
+  json << "\n]\n";
 }
 
 std::string Table::markdown() const {

@@ -60,6 +60,7 @@ class Table {
  public:
   explicit Table(std::vector<std::string> head) : rows_{std::move(head)} {}
   void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+  /// And the same rows as JSON, as objects by the head's names, beside it.
   void write(const std::filesystem::path& csv) const;
   std::string markdown() const;
 

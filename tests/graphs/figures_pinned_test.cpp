@@ -1,6 +1,7 @@
 // Sites pinned by hand, run as a user runs them and measured on the files alone.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "support/exported_pieces.h"
@@ -32,12 +33,9 @@ double crackIn(const std::string& directory, double at) {
   return area;
 }
 
-TEST(FiguresPinned, TwoPinsAreCutApartByTheirBisector) {
-  const ScratchDirectory scratch;
-  const ProgramRun run = runPinned(
-      scratch.file("out"), " --var degree=2 --set 'pins.points=[[-0.2, 0.3, 0.01], [0.31, 0.5, -0.02]]'");
-  ASSERT_EQ(run.exitCode, 0) << run.output;
-  const auto cracks = cracksOf(scratch.file("out"));
+/// All cracks are where both pins of the tests are equally far.
+void expectBisector(const std::string& directory) {
+  const auto cracks = cracksOf(directory);
   EXPECT_GT(cracks.size(), 20u);
   for (const auto& triangle : cracks)
     for (const auto& p : triangle) {
@@ -45,6 +43,32 @@ TEST(FiguresPinned, TwoPinsAreCutApartByTheirBisector) {
                    second = std::hypot(p[0] - 0.31, p[1] - 0.5, p[2] + 0.02);
       ASSERT_NEAR(first, second, 1e-12);
     }
+}
+
+TEST(FiguresPinned, TwoPinsAreCutApartByTheirBisector) {
+  const ScratchDirectory scratch;
+  const ProgramRun run = runPinned(
+      scratch.file("out"), " --var degree=2 --set 'pins.points=[[-0.2, 0.3, 0.01], [0.31, 0.5, -0.02]]'");
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  expectBisector(scratch.file("out"));
+}
+
+TEST(FiguresPinned, TheRecipeTakesPins) {
+  const ScratchDirectory scratch;
+  std::ofstream(scratch.file("pins.json")) << R"({ "format": 1,
+    "subgraphs": { "Shatter": ")" SHERD_SOURCE_DIR R"(/graphs/recipes/impact_to_pieces.json" },
+    "nodes": {
+      "mesh":  { "type": "LoadMesh@1", "params": { "file": "${ASSETS}/wall.obj" } },
+      "tets":  { "type": "Tetrahedralize@1", "in": { "mesh": "mesh" }, "params": { "tets": 1400 } },
+      "pins":  { "type": "PinSites@1", "in": { "embedding": "break.embedding" },
+                 "params": { "points": [[-0.2, 0.3, 0.01], [0.31, 0.5, -0.02]] } },
+      "break": { "type": "Shatter", "in": { "body": "tets", "pinned": "pins" },
+                 "params": { "degree": 2, "orientation": [25, 0, 15] } },
+      "crack": { "type": "ExportCrackSurface@1", "in": { "pieces": "break.pieces" }, "params": { "directory": "out" } }
+    } })";
+  const ProgramRun run = runProgram("run '" + scratch.file("pins.json") + "'");
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  expectBisector(scratch.file("out"));
 }
 
 TEST(FiguresPinned, TheBlocksStayWhereTheyArePinned) {

@@ -36,6 +36,7 @@ const Names kStepLayers{"geometry", "pictures", "types", "base"};
 const std::vector<std::pair<std::string, Names>> kContracts{
     {"repair", {}},
     {"load_mesh", {"repair"}},
+    {"load_picture", {}},
     {"tetrahedralize", {}},
     {"warp_rest", {}},
     {"embed", {}},

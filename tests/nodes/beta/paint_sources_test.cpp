@@ -102,8 +102,6 @@ TEST(PaintColors, WhatIsMissingIsNamed) {
   mesh.colorSets.clear();
   EXPECT_TRUE(
       says(errorOf(params, {nullptr, nullptr, &mesh}), "mesh: the mesh 'box.ply' has no vertex colours"));
-  params.source = PaintSource::Texture;
-  EXPECT_TRUE(says(errorOf(params, {nullptr, nullptr, &mesh}), "source: textures can't be painted from"));
 }
 
 TEST(PaintNoise, LiesBetweenLowAndHighInTheSolidAndIsTheSameOnAnyLattice) {
