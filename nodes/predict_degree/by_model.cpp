@@ -16,8 +16,8 @@ int foretold(const DegreeEstimate& estimate, const PredictDegreeParams& params, 
     const bool searches = params.outside == OutsideModel::Search;
     exec.warn(fmt::format(
         "this hit lies far outside of what the model was made of: {}",
-        searches ? "its degree is searched for; train with drops from more heights"
-                 : fmt::format("that it gives {} pieces is a guess; train with drops from more heights",
+        searches ? "its degree is searched for; train with more hits of its kind"
+                 : fmt::format("that it gives {} pieces is a guess; train with more hits of its kind",
                                estimate.degree)));
     if (searches) return 0;
   }

@@ -21,7 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// What parts of the work cost beside each other, as measured on bodies of 5,000 tetrahedra.
-constexpr double kImpactCost = 1, kEnergyCost = 2, kWeightCost = 0.5, kPathCost = 20;
+constexpr double kImpactCost = 1, kEnergyCost = 1.2, kWeightCost = 0.1, kPathCost = 3.5;
 
 double msSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -222,12 +222,15 @@ Result<void> Examples::search(Phases& phases, const Exec& exec) {
   for (std::size_t task = 0; task < n; ++task)
     if (!isComplete(paths[task], goalFor(loadOf(task).strongest))) left.push_back(task);
   out_.paths = left.size();
-  // Long ones first, so that no thread is left with one at the end.
-  const auto length = [&](std::size_t task) {
-    return loadOf(task).total * loadOf(task).strongest * loadOf(task).strongest;
-  };
-  std::stable_sort(left.begin(), left.end(), [&](auto a, auto b) { return length(a) > length(b); });
-  SHERD_CHECK(forEach(phases.next(1, 0), left.size(), [&](std::size_t k) -> Result<void> {
+  // Long ones first, so that no thread is left with one at the end: what takes long is about as the energy.
+  std::vector<double> cost(n);
+  for (std::size_t task = 0; task < n; ++task)
+    cost[task] = loadOf(task).total * std::pow(loadOf(task).strongest, 2);
+  std::stable_sort(left.begin(), left.end(), [&](auto a, auto b) { return cost[a] > cost[b]; });
+  const Exec part = phases.next(1, 0);
+  CostProgress progress(part);
+  for (const std::size_t task : left) progress.add(cost[task]);
+  SHERD_CHECK(forEach(quiet(exec), left.size(), [&](std::size_t k) -> Result<void> {
     const std::size_t task = left[k];
     const Load& load = loadOf(task);
     const auto start = Clock::now();
@@ -236,6 +239,7 @@ Result<void> Examples::search(Phases& phases, const Exec& exec) {
                        quiet(exec)));
     remember(memo_, keyOfPath(load, task % repeats_), paths[task], msSince(start));
     paths[task].sites.resize(0, 0);  // a hundred thousand of them would take gigabytes
+    progress.done(cost[task]);
     return {};
   }));
   for (std::size_t task = 0; task < n; ++task)

@@ -32,6 +32,22 @@ class Phases {
   double done_ = 0;
 };
 
+/// Progress over things that cost differently, done in any order by any thread.
+class CostProgress {
+ public:
+  explicit CostProgress(const Exec& exec) : exec_(exec) {}
+  void add(double cost) { total_ += cost; }
+  void done(double cost) {
+    const double done = done_.fetch_add(cost) + cost;
+    if (total_ > 0) exec_.progress(std::min(done / total_, 1.0));
+  }
+
+ private:
+  const Exec& exec_;
+  double total_ = 0;
+  std::atomic<double> done_{0};
+};
+
 /// What may be done beside others: be cancelled, but not speak.
 inline Exec quiet(const Exec& exec) { return {exec.cancel, {}, {}}; }
 

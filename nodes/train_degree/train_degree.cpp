@@ -10,7 +10,7 @@ namespace sherd {
 namespace {
 
 /// Of the time that a training takes, as measured on bodies of 5,000 tetrahedra.
-constexpr double kExamplesShare = 0.7;
+constexpr double kExamplesShare = 0.8;
 
 /// `exec` for a part of the work, whose progress is that from `begin` to `end` of the whole.
 Exec partOf(const Exec& exec, double begin, double end) {

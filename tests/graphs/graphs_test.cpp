@@ -266,6 +266,17 @@ TEST(Graphs, LearnedDegreesStandInForSearches) {
   EXPECT_NE(other.output.find("α (1 there, 0.5 here)"), std::string::npos) << other.output;
 }
 
+TEST(Graphs, LearnedFromBallsBreaksAWallByWhatWasLearned) {
+  const ScratchDirectory scratch;
+  const ProgramRun run =
+      runProgram("run '" + kGraphs + "learn_wall.json' --to crack --frames 15 --var balls=12 " +
+                 "--set degree.outside=predict --var out='" + scratch.file("out") + "'");
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  EXPECT_NE(run.output.find("learned from 48 balls"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("the model foretells"), std::string::npos) << run.output;
+  expectBroken(scratch.file("out/0015"), kAssets + "wall.obj", 5, 60);
+}
+
 class SlowModels : public testing::TestWithParam<std::tuple<const char*, int>> {};
 
 TEST_P(SlowModels, KeepEveryPromise) {
