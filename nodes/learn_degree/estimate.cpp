@@ -7,6 +7,7 @@
 #include "base/value_type.h"
 #include "learn_degree/learn_degree.h"
 #include "learn_degree/process.h"
+#include "learn_degree/sums.h"
 #include "learn_degree/weight_point.h"
 
 namespace sherd {
@@ -25,25 +26,19 @@ struct Output {
   double y = 0, deviation = 0;
 };
 
-Output outputOf(const DegreeModel& model, const Eigen::VectorXd& z, const Eigen::VectorXd& distance,
-                Deviation deviation) {
+Output outputOf(const DegreeModel& model, const Eigen::VectorXd& distance, Deviation deviation) {
   const bool isProcess = model.method == DegreeMethod::Process;
-  Eigen::VectorXd phi(static_cast<Eigen::Index>(model.centres.size()));
-  for (Eigen::Index k = 0; k < phi.size(); ++k) {
-    const double r = distance[model.centres[static_cast<std::size_t>(k)]];
-    phi[k] = isProcess ? matern(r) : r;
-  }
-  const auto features = static_cast<Eigen::Index>(model.slope.size());
+  Eigen::ArrayXd phi(static_cast<Eigen::Index>(model.centres.size()));
+  for (Eigen::Index k = 0; k < phi.size(); ++k) phi[k] = distance[model.centres[static_cast<std::size_t>(k)]];
+  if (isProcess) phi = maternOf(phi);
   Output out;
-  out.y = model.bias + asVector(model.slope).dot(z.head(features)) + asVector(model.coefficient).dot(phi);
-  if (deviation == Deviation::Unknown || model.inverse.size() == 0) return out;
-  const auto trend = [&](const auto& a) {
-    return kTrendVariance + model.trend * a.head(features).dot(z.head(features));
-  };
-  for (Eigen::Index k = 0; k < phi.size(); ++k)
-    phi[k] += trend(model.points.col(model.centres[static_cast<std::size_t>(k)]));
-  const double unexplained = 1 + trend(z) - phi.dot(model.inverse.selfadjointView<Eigen::Lower>() * phi);
-  out.deviation = std::sqrt(model.variance * std::max(0.0, unexplained));
+  out.y = model.bias + asVector(model.coefficient).dot(phi.matrix());
+  if (deviation == Deviation::Unknown || model.whitening.size() == 0) return out;
+  phi += kMeanVariance;
+  const auto size = static_cast<std::size_t>(phi.size());
+  const double unexplained =
+      1 + kMeanVariance - squaredNormOfProduct({model.whitening.data(), size, size}, phi.data());
+  out.deviation = std::sqrt(model.variance * (std::max(0.0, unexplained) + model.noise));
   return out;
 }
 
@@ -58,20 +53,24 @@ DegreeEstimate estimateDegree(const DegreeModel& model, const WeightField& weigh
   const bool isProcess = model.method == DegreeMethod::Process;
   const WeightPoint point = pointOf(model, weights.weight, weights.volume, embedding);
   if (isProcess && !(point.logWhole >= 0)) return {};  // below γ as it is
-  const Eigen::VectorXd distance2 = (model.points.colwise() - point.z).colwise().squaredNorm().transpose();
+  Eigen::VectorXd distance2(model.points.cols());
+  squaredDistances({model.points.data(), static_cast<std::size_t>(model.points.rows()),
+                    static_cast<std::size_t>(model.points.cols())},
+                   point.z.data(), distance2.data());
   DegreeEstimate estimate;
   estimate.distance = std::numeric_limits<double>::infinity();
   if (distance2.size() > 0)
     estimate.distance = std::sqrt(distance2.minCoeff() + point.residual * point.residual);
   estimate.isOutside = !(estimate.distance <= model.reach + kSamePoint * (1 + point.z.norm()));
-  const Output out = outputOf(model, point.z, distance2.cwiseSqrt(), deviation);
+  const Output out = outputOf(model, distance2.cwiseSqrt(), deviation);
   if (!isProcess) {
     estimate.degree = rounded(out.y, 1);
     return estimate;
   }
   // N = ⌈ν⌉, so on average half a piece above ν.
-  estimate.degree = rounded(std::exp(out.y) + 0.5, 2);
-  estimate.deviation = std::exp(out.y) * out.deviation;
+  const double crossing = std::exp(out.y + point.logPieces);
+  estimate.degree = rounded(crossing + 0.5, 2);
+  estimate.deviation = crossing * out.deviation;
   return estimate;
 }
 

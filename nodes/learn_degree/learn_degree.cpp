@@ -15,6 +15,7 @@
 #include "learn_degree/network.h"
 #include "learn_degree/principal_components.h"
 #include "learn_degree/process.h"
+#include "learn_degree/split_tree.h"
 #include "learn_degree/weight_point.h"
 
 namespace sherd {
@@ -23,6 +24,8 @@ namespace {
 /// A spread below these counts as these: an input that the examples don't vary in is still one to differ in.
 constexpr double kLeastLogSpread = 1e-3;
 constexpr double kLeastShapeSpread = 1e-3;
+/// What a search needs of the tree's cells (learn_degree/split_tree.h), where no example says it.
+constexpr double kTreeRatio = 0.8;
 
 /// Of the time that learning takes.
 constexpr double kFitShare = 0.6, kEstimateShare = 0.1;
@@ -35,6 +38,7 @@ struct Body {
   const std::vector<double>& volume;
   const DegreeValidity& validFor;
   const LearnDegreeParams& params;
+  std::vector<Index> order;  ///< of splitOrder, for a process
 };
 
 /// What a fit to all examples decides, for the fits to parts of them.
@@ -153,7 +157,8 @@ void setFeatureScale(const std::vector<ExampleList>& distinct, const Body& body,
   Eigen::MatrixXd features(kFeatures, static_cast<Eigen::Index>(distinct.size()));
   forEach(distinct.size(), exec, [&](std::size_t i) {
     features.col(static_cast<Eigen::Index>(i)) =
-        logFeatures(distinct[i][0]->weight, body.volume, body.embedding, body.validFor.gamma);
+        logFeatures(body.order, distinct[i][0]->weight, body.volume, body.embedding, body.validFor.gamma)
+            .value;
   });
   model.featureScale.resize(kFeatures, 2);
   const Eigen::VectorXd mean = features.rowwise().mean();
@@ -165,17 +170,19 @@ void setFeatureScale(const std::vector<ExampleList>& distinct, const Body& body,
 
 struct Points {
   Eigen::MatrixXd z;
-  Eigen::VectorXd residual;
+  Eigen::VectorXd residual, logPieces;
 };
 
 Points pointsOf(const std::vector<ExampleList>& distinct, const Body& body, const DegreeModel& model,
                 const Exec& exec) {
   const auto n = static_cast<Eigen::Index>(distinct.size());
-  Points points{Eigen::MatrixXd(model.featureScale.rows() + model.basis.rows(), n), Eigen::VectorXd(n)};
+  Points points{Eigen::MatrixXd(model.featureScale.rows() + model.basis.rows(), n), Eigen::VectorXd(n),
+                Eigen::VectorXd(n)};
   forEach(distinct.size(), exec, [&](std::size_t i) {
     const WeightPoint p = pointOf(model, distinct[i][0]->weight, body.volume, body.embedding);
     points.z.col(static_cast<Eigen::Index>(i)) = p.z;
     points.residual[static_cast<Eigen::Index>(i)] = p.residual;
+    points.logPieces[static_cast<Eigen::Index>(i)] = p.logPieces;
   });
   return points;
 }
@@ -208,9 +215,8 @@ void setPoints(const Points& points, const Samples& samples, DegreeModel& model)
 void setFit(Fit fit, DegreeModel& model) {
   model.centres = std::move(fit.centres);
   model.coefficient.assign(fit.coefficient.begin(), fit.coefficient.end());
-  model.slope.assign(fit.slope.begin(), fit.slope.end());
   model.bias = fit.bias;
-  model.inverse = std::move(fit.inverse);
+  model.whitening = std::move(fit.whitening);
   model.variance = fit.variance;
 }
 
@@ -236,8 +242,6 @@ Result<void> fitNetworkModel(const std::vector<ExampleList>& all, const Body& bo
 /// Lengths go into what points are made with, so that distances between points are in lengths.
 void foldLengths(const ProcessFit& fitted, DegreeModel& model) {
   model.featureScale.col(1) *= fitted.scales.feature;
-  for (double& slope : model.slope) slope /= fitted.scales.feature;
-  model.trend = kTrendVariance / (fitted.scales.feature * fitted.scales.feature);
   model.basis *= fitted.scales.component;
   model.residualFactor *= fitted.scales.component;
   if (fitted.scales.component > 0) return;
@@ -254,8 +258,8 @@ Result<void> fitProcessModel(const ExampleList& examples, const Body& body, Deci
   for (std::size_t i = 0; i < examples.size(); ++i)
     if (whole[i] >= body.validFor.gamma) broken.push_back(examples[i]);
   model.featureScale = Eigen::MatrixXd::Zero(kFeatures, 2);
-  model.slope.assign(static_cast<std::size_t>(kFeatures), 0.0);
-  model.bias = std::log(1.5);  // a body that breaks has two pieces or more
+  model.order = body.order;
+  model.bias = std::log(kTreeRatio);
   model.points.resize(kFeatures, 0);
   if (broken.empty()) return {};
   const std::vector<ExampleList> all = thinned(distinct(broken, exec));
@@ -263,11 +267,14 @@ Result<void> fitProcessModel(const ExampleList& examples, const Body& body, Deci
   setFeatureScale(all, body, model, exec);
   SHERD_CHECK(setBasis(all, body.params.tolerance, true, model, exec));
   Samples samples = samplesOf(all, model.method);
-  samples.points = pointsOf(all, body, model, exec).z;
+  Points points = pointsOf(all, body, model, exec);
   if (exec.cancelled()) return cancelledError();
+  samples.points = std::move(points.z);
+  samples.target -= points.logPieces;
   SHERD_ASSIGN(ProcessFit fitted, fitProcess(samples, kFeatures, decided.scales, exec));
   decided.scales = fitted.scales;
   setFit(std::move(fitted.fit), model);
+  model.noise = fitted.scales.noise;
   foldLengths(fitted, model);
   setPoints(pointsOf(all, body, model, exec), samples, model);
   return {};
@@ -352,9 +359,10 @@ Result<DegreeErrors> errorsOnGroupsLeftOut(const ExampleList& examples, const Bo
 Result<DegreeModel> learnDegree(std::span<const DegreeExample* const> examples, const Embedding& embedding,
                                 const std::vector<double>& volume, const DegreeValidity& validFor,
                                 const LearnDegreeParams& params, const Exec& exec) {
-  const Body body{embedding, volume, validFor, params};
+  Body body{embedding, volume, validFor, params, {}};
   const ExampleList list(examples.begin(), examples.end());
   SHERD_CHECK(check(list, body));
+  if (params.method == DegreeMethod::Process) body.order = splitOrder(embedding);
   Decided decided;
   SHERD_ASSIGN(DegreeModel model, fitModel(list, body, decided, exec));
   if (exec.cancelled()) return cancelledError();

@@ -7,17 +7,21 @@
 // through log E_D(N − 1) and log E_D(N) over log N falls to γ: N = ⌈ν⌉.
 //
 // Three methods.
-// - `Process`: a Gaussian process for y = log ν. Its inputs are the logarithms of five amounts over γ, all of
-//   which γ can be compared with (J·m²), and the principal components of w / Σw:
-//     E_1 = Σ w ‖x̄ − c‖²        E_D of the whole body, c its centroid by volume
-//     S   = Σ w ‖x̄ − c_w‖²      about the weighted centroid
-//     T   = L² Σ w              L the embedding's diameter
-//     Z_p = V^(2−(1−p)/p) … (Σ V_n^(1−p) w_n^p)^(1/p), p = 3/5 and 1/3, scaled to J·m² by powers of V = ΣV_n.
-//   Z_{3/5} is what E_D of the best N sites in three dimensions tends to, but for a constant, times N^(−2/3)
-//   (Zador 1982, "Asymptotic quantization error of continuous signals"); Z_{1/3} the same in one. The
-//   covariance is linear in the logarithms (so that it extrapolates as a power law) plus Matérn's with ν =
-//   5/2 over all inputs; lengths and noise are those of the largest marginal likelihood on a grid. E_1 < γ is
-//   known at once to give one piece.
+// - `Process`: a Gaussian process for y = log ν − log ν_t, where ν_t is the number of cells of a fixed tree
+// over
+//   the nodes that brings the energy below γ (learn_degree/split_tree.h): a stand-in for the search that
+//   takes microseconds and is off by a fifth. What is learned is by how much, from the logarithms of
+//     ν_t, and ν_t for 4 γ
+//     E_1 / γ   E_1 = Σ w ‖x̄ − c‖²: E_D of the whole body, c its centroid by volume
+//     S / γ     S = Σ w ‖x̄ − c_w‖² about the weighted centroid
+//     Z_p / γ   Z_p = V^(2−(1−p)/p) … (Σ V_n^(1−p) w_n^p)^(1/p), p = 3/4 and 1/2, scaled to J·m² by powers of
+//               V = ΣV_n: how concentrated the weights are. With p = d/(d + 2), what E_D of the best N sites
+//               in d dimensions tends to, but for a constant, times N^(-2/d) (Zador 1982, "Asymptotic
+//               quantization error of continuous signals")
+//   and the principal components of w / Σw. The covariance is Matérn's with ν = 5/2 over all inputs around an
+//   unknown mean, so that far from all examples the ratio is their mean's, and the stand-in carries the law;
+//   lengths and noise are those of the largest marginal likelihood on a grid. E_1 < γ is known at once to
+//   give one piece.
 // - `Network`: the paper's. Inputs are the principal components of w, the output is N. Centres are examples,
 //   added by orthogonal least squares (Chen, Cowan and Grant 1991) until the error on the examples falls
 //   below `trainingError` of the mean degree, and no more of them than give the least error on groups left
@@ -73,8 +77,10 @@ Result<DegreeModel> learnDegree(const std::vector<DegreeExample>& examples, cons
                                 const LearnDegreeParams& params, const Exec& exec);
 
 struct DegreeEstimate {
-  int degree = 1;          ///< N ≥ 1
-  double deviation = 0;    ///< standard deviation of N; 0 where it isn't asked for, or the method knows none
+  int degree = 1;  ///< N ≥ 1
+  /// Standard deviation of the N that one search would find, its seed's share in it; 0 where it isn't asked
+  /// for, or the method knows none.
+  double deviation = 0;
   double distance = 0;     ///< to the nearest example, in what the model compares
   bool isOutside = false;  ///< distance > reach: nothing like it was learned
 };

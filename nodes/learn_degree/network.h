@@ -19,13 +19,12 @@ struct Samples {
   std::vector<int> group;
 };
 
-/// y = bias + slope · z + Σ_i coefficient_i φ(‖z − z_centre(i)‖).
+/// y = bias + Σ_i coefficient_i φ(‖z − z_centre(i)‖).
 struct Fit {
   std::vector<Index> centres;
   Eigen::VectorXd coefficient;
-  Eigen::VectorXd slope;  ///< over the first coordinates; empty: none
   double bias = 0;
-  Eigen::MatrixXd inverse;  ///< of a process
+  Eigen::MatrixXd whitening;  ///< of a process
   double variance = 0;
 };
 

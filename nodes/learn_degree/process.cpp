@@ -34,9 +34,8 @@ class Process {
   Eigen::MatrixXd covariance(const ProcessScales& s) const {
     Eigen::MatrixXd k =
         s.feature * s.feature * featureDistance2_ + s.component * s.component * componentDistance2_;
-    k = k.unaryExpr([](double r2) { return matern(std::sqrt(r2)); });
-    k += kTrendVariance * (features_.transpose() * features_);
-    k.array() += kTrendVariance;
+    for (Eigen::Index j = 0; j < k.cols(); ++j) k.col(j) = maternOf(k.col(j).array().sqrt());
+    k.array() += kMeanVariance;
     k.diagonal() += s.noise * count_.cwiseInverse();
     return k;
   }
@@ -57,10 +56,9 @@ class Process {
     const Eigen::LLT<Eigen::MatrixXd> factor(covariance(s));
     out.fit.centres.assign(used_.begin(), used_.end());
     out.fit.coefficient = factor.solve(target_);
-    out.fit.inverse = factor.solve(Eigen::MatrixXd::Identity(n, n));
+    out.fit.whitening = factor.matrixU().solve(Eigen::MatrixXd::Identity(n, n));
     out.fit.variance = target_.dot(out.fit.coefficient) / static_cast<double>(n);
-    out.fit.bias = mean_ + kTrendVariance * out.fit.coefficient.sum();
-    out.fit.slope = kTrendVariance * (features_ * out.fit.coefficient);
+    out.fit.bias = mean_ + kMeanVariance * out.fit.coefficient.sum();
     return out;
   }
 
@@ -108,9 +106,9 @@ bool improve(const Process& process, ProcessScales& scales, double ProcessScales
 
 }  // namespace
 
-double matern(double r) {
-  const double a = std::sqrt(5.0) * r;
-  return (1 + a + a * a / 3) * std::exp(-a);
+Eigen::ArrayXd maternOf(const Eigen::ArrayXd& r) {
+  const Eigen::ArrayXd a = std::sqrt(5.0) * r;
+  return (1 + a + a.square() / 3) * (-a).exp();
 }
 
 Result<ProcessFit> fitProcess(const Samples& samples, Eigen::Index features,
@@ -119,7 +117,6 @@ Result<ProcessFit> fitProcess(const Samples& samples, Eigen::Index features,
   if (process.isConstant()) {
     ProcessFit constant;
     constant.fit.bias = process.mean();
-    constant.fit.slope = Eigen::VectorXd::Zero(features);
     return constant;
   }
   if (given) return process.fit(*given);

@@ -46,12 +46,14 @@ bool isSound(const DegreeModel& m) {
   const Eigen::Index features = m.featureScale.rows(), components = m.basis.rows();
   const auto size = [](const auto& list) { return static_cast<Eigen::Index>(list.size()); };
   return method >= 0 && method <= static_cast<int>(DegreeMethod::Exact) && m.basis.cols() == size(m.mean) &&
-         (features == 0 || m.featureScale.cols() == 2) && size(m.slope) == features &&
+         (features == 0 || m.featureScale.cols() == 2) &&
+         (m.order.empty() || m.mean.empty() || m.order.size() == m.mean.size()) &&
+         allInRange(m.order, 0, m.order.size()) &&
          (m.points.cols() == 0 || m.points.rows() == features + components) &&
          allInRange(m.centres, 0, static_cast<std::size_t>(m.points.cols())) &&
          size(m.coefficient) == size(m.centres) &&
-         (m.inverse.size() == 0 ||
-          (m.inverse.rows() == size(m.centres) && m.inverse.cols() == size(m.centres)));
+         (m.whitening.size() == 0 ||
+          (m.whitening.rows() == size(m.centres) && m.whitening.cols() == size(m.centres)));
 }
 
 }  // namespace
@@ -64,21 +66,21 @@ void hashValue(Hasher& hasher, const DegreeModel& m) {
   hashBits(hasher, m.basis);
   hashBits(hasher, m.residualFactor);
   hashBits(hasher, m.featureScale);
+  hasher.add(m.order);
   hashBits(hasher, m.points);
-  hasher.add(m.centres).add(m.coefficient).add(m.slope);
+  hasher.add(m.centres).add(m.coefficient);
   hashBits(hasher, m.bias);
-  hashBits(hasher, m.inverse);
+  hashBits(hasher, m.whitening);
   hashBits(hasher, m.variance);
-  hashBits(hasher, m.trend);
+  hashBits(hasher, m.noise);
   hashBits(hasher, m.reach);
   hashBits(hasher, m.errors);
 }
 
 std::size_t byteSize(const DegreeModel& m) {
-  const auto numbers = m.basis.size() + m.featureScale.size() + m.points.size() + m.inverse.size();
-  return (static_cast<std::size_t>(numbers) + m.mean.size() + m.coefficient.size() + m.slope.size()) *
-             sizeof(double) +
-         m.centres.size() * sizeof(Index);
+  const auto numbers = m.basis.size() + m.featureScale.size() + m.points.size() + m.whitening.size();
+  return (static_cast<std::size_t>(numbers) + m.mean.size() + m.coefficient.size()) * sizeof(double) +
+         (m.centres.size() + m.order.size()) * sizeof(Index);
 }
 
 void saveValue(ArchiveWriter& to, const DegreeModel& m) {
@@ -89,14 +91,14 @@ void saveValue(ArchiveWriter& to, const DegreeModel& m) {
   putBits(to, m.basis);
   to.put(m.residualFactor);
   putBits(to, m.featureScale);
+  to.array(m.order);
   putBits(to, m.points);
   to.array(m.centres);
   to.array(m.coefficient);
-  to.array(m.slope);
   to.put(m.bias);
-  putBits(to, m.inverse);
+  putBits(to, m.whitening);
   to.put(m.variance);
-  to.put(m.trend);
+  to.put(m.noise);
   to.put(m.reach);
   putBits(to, m.errors);
 }
@@ -111,14 +113,14 @@ std::optional<DegreeModel> loadValue(ArchiveReader& from, std::type_identity<Deg
   getBits(from, m.basis);
   from.get(m.residualFactor);
   getBits(from, m.featureScale);
+  from.array(m.order);
   getBits(from, m.points);
   from.array(m.centres);
   from.array(m.coefficient);
-  from.array(m.slope);
   from.get(m.bias);
-  getBits(from, m.inverse);
+  getBits(from, m.whitening);
   from.get(m.variance);
-  from.get(m.trend);
+  from.get(m.noise);
   from.get(m.reach);
   getBits(from, m.errors);
   if (!from.ok() || !isSound(m)) model.reset();

@@ -37,10 +37,10 @@ struct DegreeErrors {
 
 /// A point z of the weights w, and a degree of the point (learn_degree/learn_degree.h):
 ///   z = [ factor · (feature(w) − mean) …, basis · (w / scale − mean) ],
-///   y = bias + slope · z + Σ_i coefficient_i φ(‖z − z_i‖).
+///   y = bias + Σ_i coefficient_i φ(‖z − z_i‖).
 struct DegreeModel {
   static constexpr const char* typeName = "DegreeModel";
-  static constexpr int archiveVersion = 1;
+  static constexpr int archiveVersion = 2;
 
   DegreeValidity validFor;
   DegreeMethod method = DegreeMethod::Process;
@@ -50,15 +50,15 @@ struct DegreeModel {
   Eigen::MatrixXd basis;      ///< components × nodes
   double residualFactor = 0;  ///< what the part of w / scale − mean outside the basis counts in distances
   Eigen::MatrixXd featureScale;  ///< features × 2: mean and factor
+  std::vector<Index> order;      ///< the nodes as the tree has them that a process compares with; empty: none
 
   Eigen::MatrixXd points;           ///< dimensions × examples: z_i of the distinct ones
   std::vector<Index> centres;       ///< which of them have a coefficient
   std::vector<double> coefficient;  ///< per centre
-  std::vector<double> slope;        ///< per feature
   double bias = 0;
-  Eigen::MatrixXd inverse;  ///< centres × centres: (K + noise)⁻¹ of a process; empty otherwise
-  double variance = 0;      ///< of a process, of y
-  double trend = 0;         ///< of a process: the covariance z · z' of the features, in variances
+  Eigen::MatrixXd whitening;  ///< centres × centres, upper: L⁻ᵀ with L Lᵀ = K + noise of a process
+  double variance = 0;        ///< of a process, of y
+  double noise = 0;           ///< of a process: of one search, in variances
 
   double reach = 0;  ///< a point farther from all examples than this lies outside of what was learned
   DegreeErrors errors;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "cvd/cvd.h"
 #include "learn_degree/learn_degree.h"
 #include "support/lloyd_reference.h"
 
@@ -42,6 +43,24 @@ inline DegreeExample powerLaw(const reference::Cloud& c, std::vector<double> wei
   e.weight = std::move(weight);
   e.degree = {std::max(1, static_cast<int>(std::ceil(crossing)))};
   e.crossing = {crossing <= 1 ? 0.5 : crossing};
+  e.group = group;
+  return e;
+}
+
+/// What a search finds: sites grown one at a time until E_D is below γ.
+inline DegreeExample searched(const reference::Cloud& c, std::vector<double> weight, double gamma,
+                              int group) {
+  const WeightField field{nullptr, {}, weight, c.weights.volume};
+  Lloyd lloyd = firstSites(*c.embedding, field, nullptr, Exec{});
+  double before = lloyd.energy(), energy = before;
+  while (!(energy < gamma) && growSite(lloyd, *c.embedding, field, Growth::ByEnergy, 1, Exec{}).ok())
+    before = energy, energy = lloyd.energy();
+  const auto n = static_cast<double>(lloyd.siteCount());
+  const double share = std::log(before / gamma) / std::log(before / energy);
+  DegreeExample e;
+  e.weight = std::move(weight);
+  e.degree = {static_cast<int>(n)};
+  e.crossing = {n < 2 ? 0.5 : (n - 1) * std::pow(n / (n - 1), share)};
   e.group = group;
   return e;
 }

@@ -117,21 +117,58 @@ TEST(LearnDegree, ExactGoesThroughTheMeanOfRepeats) {
   for (const DegreeExample& e : examples) EXPECT_EQ(estimate(c, model, e.weight).degree, e.degree[0]);
 }
 
-TEST(LearnDegree, AProcessFindsThePowerLawOnHitsElsewhereAndHarder) {
+TEST(LearnDegree, AProcessFindsThePowerLawOnHitsElsewhere) {
   const Cloud c = cloud(400, 5, 5);
   const double gamma = gammaFor(c, 15);
   const DegreeModel model = learned(c, powerLaws(c, 24, 4, gamma), gamma);
-  EXPECT_GT(model.errors.rSquared, 0.995);
+  EXPECT_GT(model.errors.rSquared, 0.99);
   EXPECT_LT(model.errors.meanAbsolute, 0.03 * model.errors.meanDegree);
   for (int hit = 200; hit < 220; ++hit) {
     const DegreeExample e = powerLaw(c, hitAt(c, hit, 2.5), gamma, 0);
-    EXPECT_NEAR(estimate(c, model, e.weight).degree, e.degree[0], 1 + 0.05 * e.degree[0]);
+    EXPECT_NEAR(estimate(c, model, e.weight).degree, e.degree[0], 1 + 0.06 * e.degree[0]);
   }
-  const DegreeExample hard = powerLaw(c, hitAt(c, 201, 60), gamma, 0);
-  const DegreeEstimate far = estimate(c, model, hard.weight);
-  EXPECT_TRUE(far.isOutside);
-  EXPECT_NEAR(far.degree, hard.degree[0], 0.2 * hard.degree[0]);
-  EXPECT_GT(far.deviation, estimate(c, model, hitAt(c, 201, 2.5)).deviation);
+}
+
+TEST(LearnDegree, AProcessForetellsSearchesOfHitsElsewhereAndHarder) {
+  const Cloud c = cloud(400, 3, 5);
+  const double gamma = gammaFor(c, 15);
+  std::vector<DegreeExample> examples;
+  for (int g = 0; g < 24; ++g)
+    for (const double strength : {1.0, 2.0, 3.0})
+      examples.push_back(searched(c, hitAt(c, 7 * g, strength), gamma, g));
+  const DegreeModel model = learned(c, examples, gamma);
+  EXPECT_GT(model.errors.rSquared, 0.97);
+  for (const double strength : {0.5, 2.5, 20.0}) {
+    double absolute = 0, sum = 0, within = 0;
+    for (int hit = 200; hit < 220; ++hit) {
+      const DegreeExample e = searched(c, hitAt(c, hit, strength), gamma, 0);
+      const DegreeEstimate told = estimate(c, model, e.weight);
+      absolute += std::abs(told.degree - e.degree[0]), sum += e.degree[0];
+      within += std::abs(told.degree - e.degree[0]) <= 2 * told.deviation + 0.5;
+      EXPECT_TRUE(told.isOutside || strength < 10);
+    }
+    EXPECT_LT(absolute, (strength > 10 ? 0.15 : 0.08) * sum) << strength;
+    EXPECT_GE(within, 15) << strength;
+  }
+}
+
+TEST(LearnDegree, ErrorBarsAreWhatCholeskySays) {
+  // Far more of the covariance is the unknown mean than anything else: the bars must not drown in it.
+  const Cloud c = cloud(300, 3, 15);
+  const double gamma = gammaFor(c, 15);
+  std::vector<DegreeExample> examples;
+  for (int g = 0; g < 40; ++g) examples.push_back(searched(c, hitAt(c, 7 * g, 1 + g % 4), gamma, g));
+  const DegreeModel model = learned(c, examples, gamma);
+  ASSERT_EQ(model.whitening.rows(), 40);
+  const double least = std::sqrt(model.variance * model.noise);
+  for (const DegreeExample& e : examples) {
+    const DegreeEstimate told = estimate(c, model, e.weight);
+    EXPECT_GT(told.deviation, 0.9 * least * (told.degree - 1));
+    EXPECT_LT(told.deviation, 1.5 * least * (told.degree + 1));  // it was seen: little but noise is left
+  }
+  const DegreeExample far = searched(c, hitAt(c, 3, 100), gamma, 0);
+  const DegreeEstimate guess = estimate(c, model, far.weight);
+  EXPECT_GT(guess.deviation, 2 * least * guess.degree);
 }
 
 TEST(LearnDegree, AHitLikeTheOthersIsInside) {

@@ -236,8 +236,9 @@ TEST(ArchiveChecks, DegreeModel) {
   EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.centres[0] = 7; }));
   EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.centres[0] = -1; }));
   EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.coefficient.pop_back(); }));
-  EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.slope.pop_back(); }));
-  EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.inverse.resize(2, 1); }));
+  EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.order.pop_back(); }));
+  EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.order[1] = 4; }));
+  EXPECT_FALSE(accepted<DegreeModel>([](DegreeModel& m) { m.whitening.resize(2, 1); }));
 }
 
 TEST(ArchiveChecks, EmbeddingSitesAndPartition) {

@@ -99,14 +99,14 @@ inline DegreeModel degreeModel() {
   m.basis = Eigen::MatrixXd::Random(2, 4);
   m.residualFactor = 0.5;
   m.featureScale = Eigen::MatrixXd::Random(3, 2);
+  m.order = {2, 0, 3, 1};
   m.points = Eigen::MatrixXd::Random(5, 7);
   m.centres = {6, 0};
   m.coefficient = {-0.0, kLargest};
-  m.slope = {1, 2, kNan};
   m.bias = -0.0;
-  m.inverse = Eigen::MatrixXd::Identity(2, 2);
+  m.whitening = Eigen::MatrixXd::Identity(2, 2);
   m.variance = 3;
-  m.trend = kNan;
+  m.noise = kNan;
   m.reach = kSmallest;
   m.errors = {1, 2, -0.0, 4, 5};
   return m;
