@@ -180,10 +180,9 @@ Points pointsOf(const std::vector<ExampleList>& distinct, const Body& body, cons
                 Eigen::VectorXd(n)};
   forEach(distinct.size(), exec, [&](std::size_t i) {
     const WeightPoint p = pointOf(model, distinct[i][0]->weight, body.volume, body.embedding);
-    const auto column = static_cast<Eigen::Index>(i);
-    points.z.col(column) = p.z;
-    points.residual[column] = p.residual;
-    points.logPieces[column] = p.logPieces;
+    points.z.col(static_cast<Eigen::Index>(i)) = p.z;
+    points.residual[static_cast<Eigen::Index>(i)] = p.residual;
+    points.logPieces[static_cast<Eigen::Index>(i)] = p.logPieces;
   });
   return points;
 }

@@ -38,6 +38,7 @@ int foretold(const DegreeEstimate& estimate, const PredictDegreeParams& params, 
 Result<Sites> predictByModel(const DegreeModel& model, const WeightField& weights,
                              const std::shared_ptr<const Embedding>& embedding,
                              const PredictDegreeParams& params, const Exec& exec, const Sites* pinned) {
+  if (params.by == DegreeBy::Search) return predictDegree(weights, *embedding, pinned, params, exec);
   PredictDegreeParams grown = params;
   if (params.degree == 0) {
     SHERD_CHECK(checkLloydInput(*embedding, weights));
@@ -53,7 +54,11 @@ Result<Sites> predictByModel(const DegreeModel& model, const WeightField& weight
   if (params.degree == 0 && grown.degree == 1) pinned = nullptr;
   if (params.degree == 0 && grown.degree > 1 && pinned != nullptr)
     grown.degree = std::max(grown.degree, static_cast<int>(pinned->pinned));
-  return predictDegree(weights, *embedding, pinned, grown, exec);
+  SHERD_ASSIGN(Sites sites, predictDegree(weights, *embedding, pinned, grown, exec));
+  if (params.degree > 0) return sites;
+  sites.gamma = params.gamma;
+  sites.degreeGiven = false;
+  return sites;
 }
 
 }  // namespace sherd

@@ -19,6 +19,8 @@
 
 namespace sherd {
 
+/// What finds the degree where there is a model.
+enum class DegreeBy { Model, Search };
 /// What to do with a hit that lies far outside of what a model was made of.
 enum class OutsideModel { Search, Predict };
 /// What to do with a body that a model was not made for: a fragment, or another tetrahedral mesh.
@@ -29,6 +31,7 @@ struct PredictDegreeParams {
   int degree = 0;       ///< ≥ 0; 0: from the energy, otherwise that many sites, whatever γ
   std::int64_t seed = 1;
   int maxDegree = 1000;  ///< ≥ 1, of the search by γ, and of what a model foretells
+  DegreeBy by = DegreeBy::Model;
   OutsideModel outside = OutsideModel::Search;
   OtherBody otherBody = OtherBody::Search;
 };
@@ -51,11 +54,12 @@ inline Result<Sites> predictDegree(const WeightField& weights, const Embedding& 
 }
 
 /// The same with what was learned of the body in place of the search: as many sites as the model foretells,
-/// grown as with `degree` (from those pinned); a degree that is given goes before. Says what it foretells;
-/// warns where the hit lies outside of what the model was made of, and then does as `outside` says. A body
-/// with other tetrahedra than the model's is searched, which is said, or refused, as `otherBody` says.
-/// Errors: also a model that was made for the same body and something else that differs (embedding, material,
-/// γ, α, β), by all that does. Cost beyond growing: that of estimateDegree (learn_degree/learn_degree.h).
+/// grown as with `degree` (from those pinned), with γ handed on: E_D of them may be somewhat above it. A
+/// degree that is given goes before. Says what it foretells; warns where the hit lies outside of what the
+/// model was made of, and then does as `outside` says. A body with other tetrahedra than the model's is
+/// searched, which is said, or refused, as `otherBody` says. Errors: also a model that was made for the same
+/// body and something else that differs (embedding, material, γ, α, β), by all that does. Cost beyond
+/// growing: that of estimateDegree (learn_degree/learn_degree.h).
 Result<Sites> predictByModel(const DegreeModel& model, const WeightField& weights,
                              const std::shared_ptr<const Embedding>& embedding,
                              const PredictDegreeParams& params, const Exec& exec,

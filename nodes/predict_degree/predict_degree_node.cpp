@@ -26,6 +26,8 @@ NodeType predictDegreeNode() {
       .integer(
           "max_degree", &PredictDegreeParams::maxDegree,
           {.unit = "", .min = 1, .max = 1e6, .help = "the search by γ ends at so many sites, with a warning"})
+      .choice("by", &PredictDegreeParams::by, {{"model", DegreeBy::Model}, {"search", DegreeBy::Search}},
+              "with a model, what finds the number; search: as without one, to compare the two")
       .choice("outside", &PredictDegreeParams::outside,
               {{"search", OutsideModel::Search}, {"predict", OutsideModel::Predict}},
               "with a model, what to do with a hit unlike all that it was made of")
@@ -36,7 +38,7 @@ NodeType predictDegreeNode() {
       .output<std::int64_t>("degree", "number of sites N; 1: it does not break")
       .output<Sites>("sites", "the sites, with E_D and γ")
       .output<double>("energy", "E_D of these sites, J·m²")
-      .implementation(3)
+      .implementation(4)
       .run([](const PredictDegreeParams& params, NodeIo& io) -> Result<void> {
         const auto weights = io.in<WeightField>("weights");
         const auto embedding = io.in<Embedding>("embedding");

@@ -168,8 +168,10 @@ void addLearning(Builder& node) {
   node.choice(
       "method", &Params::method,
       {{"best", DegreeMethod::Process}, {"paper", DegreeMethod::Network}, {"exact", DegreeMethod::Exact}},
-      "best: a Gaussian process of the logarithms of the degree and of how much energy there is and how it "
-      "is spread; paper: a network of radial basis functions on the principal components; exact: one "
+      "best: a quick count of cells in place of the search, and a Gaussian process for how far that is off, "
+      "by "
+      "how much energy there is and how it is spread; paper: a network of radial basis functions on the "
+      "principal components; exact: one "
       "that goes through all examples, for comparison");
   node.number("pca_tolerance", &Params::tolerance,
               {.unit = "",
@@ -236,7 +238,7 @@ NodeType trainDegreeNode() {
                "and learns to foretell that. What was computed is kept: more examples cost what is new, and "
                "a training "
                "that was ended goes on.");
-  node.implementation(2);
+  node.implementation(3);
   node.input<TetMesh>("body", "the body that is dropped or hit");
   node.input<Embedding>("embedding", "the distances to measure with, from Embed");
   node.optionalInput<ScalarGrid>("beta", "painted fragility β, as Weights is to have it");

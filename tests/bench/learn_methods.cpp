@@ -71,12 +71,8 @@ std::string methodsPart(const Setup& setup, const std::filesystem::path& out) {
 }
 
 std::string ballsPart(const Setup& setup, const BallParams& balls) {
-  BallParams many = balls;
-  many.throws = setup.params.orientations;
-  many.speeds = 6;
-  many.seed = 77;
-  const DropExamples tests = ballsOf(setup.body, setup.params, balls);
-  const DropExamples training = ballsOf(setup.body, setup.params, many);
+  const DropExamples tests = thrownBalls(setup.body, setup.params, balls),
+                     training = ballsToLearnFrom(setup.body, setup.params, balls);
   std::string report = fmt::format(
       "{}: {} balls of steel, {:.3g} of the diagonal in radius, {:g} to {:g} m/s, from all around; γ = "
       "{:.4g} "
@@ -99,6 +95,8 @@ std::string ballsPart(const Setup& setup, const BallParams& balls) {
 }
 
 namespace {
+
+constexpr std::size_t kShownOf = 7;  // no divisor of the number of heights: all of them are seen
 
 /// What a hit gives: by a search, and by a model.
 struct Side {
@@ -138,7 +136,7 @@ std::string hitsPart(const Setup& setup) {
       searchTimes.push_back(searched.milliseconds), siteTimes.push_back(foretold.milliseconds);
       foretellTimes.push_back(us);
     }
-    if (i % (drops.size() / 12 + 1) != 0) continue;
+    if (i % kShownOf != 0) continue;
     table.row({number(drops[i].height), number(drops[i].wholeEnergy / setup.params.gamma),
                count(static_cast<std::size_t>(searched.sites.positions.cols())),
                number(searched.milliseconds),
@@ -159,7 +157,7 @@ std::string hitsPart(const Setup& setup) {
              "{:.3f} for nine in ten, and below 1 for {}. Medians: search {:.2f} ms, foretelling {:.1f} µs, "
              "with "
              "its sites {:.2f} ms.\n\n",
-             setup.body.name, drops.size() / 12 + 1, drops.size(), broken, at(ratios, 0.5), at(ratios, 0.05),
+             setup.body.name, kShownOf, drops.size(), broken, at(ratios, 0.5), at(ratios, 0.05),
              at(ratios, 0.95), percent(below / broken), at(searchTimes, 0.5), at(foretellTimes, 0.5),
              at(siteTimes, 0.5)) +
          table.markdown();

@@ -6,13 +6,10 @@
 #include <chrono>
 #include <cmath>
 
-#include "base/parallel.h"
 #include "base/rng.h"
 #include "embed/embed.h"
 #include "load_mesh/load_mesh.h"
 #include "tetrahedralize/tetrahedralize.h"
-#include "train_degree/growth_path.h"
-#include "weights/weights.h"
 
 namespace sherd::bench {
 namespace {
@@ -21,9 +18,13 @@ constexpr std::uint64_t kThrowStream = 0x7468726f77;
 constexpr std::uint64_t kNumbersPerThrow = 8;
 constexpr int kTimings = 5;
 
-/// The n-th throw of a seed: whence it comes, where to, and how far between the slowest and the fastest.
+double radiusOf(const Body& body, const BallParams& balls) {
+  return balls.radius * boxOf(body.tets->surface->positions).diagonal();
+}
+
+/// The n-th throw of a seed.
 RigidParams thrown(const Body& body, const TrainDegreeParams& params, const BallParams& balls,
-                   std::uint64_t n, double& share) {
+                   std::uint64_t n) {
   const Rng rng(static_cast<std::uint64_t>(balls.seed), kThrowStream);
   const auto uniform = [&](std::uint64_t k) { return rng.uniformAt(kNumbersPerThrow * n + k); };
   RigidParams p = params.drop;
@@ -32,69 +33,23 @@ RigidParams thrown(const Body& body, const TrainDegreeParams& params, const Ball
   const double flat = std::sqrt(1 - height * height);
   p.ballDirection = Vec3(flat * std::cos(angle), height, flat * std::sin(angle));
   p.ballTarget = Vec3(0.1 + 0.8 * uniform(2), 0.1 + 0.8 * uniform(3), 0.1 + 0.8 * uniform(4));
-  p.ballRadius = balls.radius * boxOf(body.tets->surface->positions).diagonal();
-  share = uniform(5);
+  p.ballRadius = radiusOf(body, balls);
+  p.ballSpeed = balls.slowest + uniform(5) * (balls.fastest - balls.slowest);
   return p;
 }
 
-/// Impacts of as many throws as are asked for, and the examples that they will be.
+/// Impacts of as many throws as are asked for, and their speeds.
 std::vector<Impact> throwAll(const Body& body, const TrainDegreeParams& params, const BallParams& balls,
-                             DropExamples& out) {
+                             std::vector<double>& speeds) {
   std::vector<Impact> impacts;
-  int group = 0;
-  for (std::uint64_t n = 0; group < balls.throws; ++n) {
-    double share = 0;
-    RigidParams p = thrown(body, params, balls, n, share);
-    std::vector<Impact> one;
-    for (int k = 0; k < balls.speeds; ++k) {
-      const double at = balls.speeds == 1 ? share : k / (balls.speeds - 1.0);
-      p.ballSpeed = balls.slowest + at * (balls.fastest - balls.slowest);
-      one.push_back(orExit(dropUntilImpact(*body.tets, p, Exec{})));
-      if (!one.back().hit) break;
-      out.drops.emplace_back();
-      out.drops.back().height = p.ballSpeed;
-      out.drops.back().example.group = group;
-    }
-    if (!one.back().hit) continue;
-    impacts.insert(impacts.end(), one.begin(), one.end());
-    ++group;
+  for (std::uint64_t n = 0; static_cast<int>(impacts.size()) < balls.throws; ++n) {
+    const RigidParams p = thrown(body, params, balls, n);
+    Impact impact = orExit(dropUntilImpact(*body.tets, p, Exec{}));
+    if (!impact.hit) continue;
+    impacts.push_back(std::move(impact));
+    speeds.push_back(p.ballSpeed);
   }
   return impacts;
-}
-
-void weigh(const Body& body, const TrainDegreeParams& params, const std::vector<Impact>& impacts,
-           DropExamples& out) {
-  auto energies = orExit(impactEnergies(body.tets, impacts, params.drop.body, params.drop.elements, Exec{}));
-  WeightField made;
-  for (std::size_t i = 0; i < energies.size(); ++i) {
-    EnergyField field;
-    field.tets = body.tets;
-    field.material = params.drop.body;
-    field.nodeEnergy = std::move(energies[i].nodeEnergy);
-    made = orExit(weights(field, nullptr, {params.alpha}, Exec{}));
-    out.drops[i].strainEnergy = energies[i].total;
-    out.drops[i].example.weight = made.weight;
-  }
-  out.volume = made.volume;
-  out.validFor = validityOf(made, body.embedding, params.gamma);
-}
-
-void search(const Body& body, const TrainDegreeParams& params, DropExamples& out) {
-  parallelFor(Exec{}, out.drops.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      DropExample& drop = out.drops[i];
-      for (int r = 0; r < params.repeats; ++r) {
-        const auto path = orExit(growthPath(*body.embedding, fieldOf(body, out, drop), params.gamma,
-                                            params.seed + r, params.maxDegree, Exec{}));
-        drop.wholeEnergy = path[0];
-        const auto found = endOf(path, 1, params.gamma);
-        if (!found) exitWith(fmt::format("{} sites are not enough for {} J", path.size(), drop.strainEnergy));
-        drop.example.degree.push_back(found->degree);
-        drop.example.crossing.push_back(found->crossing);
-      }
-    }
-  });
-  out.paths = out.drops.size() * static_cast<std::size_t>(params.repeats);
 }
 
 }  // namespace
@@ -146,11 +101,25 @@ double gammaFor(const Body& body, TrainDegreeParams params, double pieces) {
   return energy[energy.size() / 2] / std::pow(pieces, 2.0 / 3);
 }
 
-DropExamples ballsOf(const Body& body, const TrainDegreeParams& params, const BallParams& balls) {
-  DropExamples out;
-  weigh(body, params, throwAll(body, params, balls, out), out);
-  search(body, params, out);
+DropExamples thrownBalls(const Body& body, const TrainDegreeParams& params, const BallParams& balls) {
+  std::vector<double> speeds;
+  TrainDegreeParams thrown = params;
+  thrown.orientations = 0;
+  thrown.impacts = throwAll(body, params, balls, speeds);
+  DropExamples out = dropsOf(body, thrown);
+  for (DropExample& one : out.drops) one.speed = speeds[one.impact];
   return out;
+}
+
+DropExamples ballsToLearnFrom(const Body& body, const TrainDegreeParams& params, const BallParams& balls) {
+  TrainDegreeParams hits = params;
+  hits.balls = params.orientations;
+  hits.orientations = 0;
+  hits.drop.ballRadius = radiusOf(body, balls);
+  const auto count = static_cast<int>(kBallSpeeds.size());
+  for (int k = 0; k < count; ++k)
+    hits.ballSpeeds.push_back(balls.slowest + k * (balls.fastest - balls.slowest) / (count - 1));
+  return dropsOf(body, hits);
 }
 
 WeightField fieldOf(const Body& body, const DropExamples& all, const DropExample& one) {

@@ -42,15 +42,15 @@ double gammaFor(const Body& body, TrainDegreeParams params, double pieces);
 
 /// Steel balls from all around at a body that floats.
 struct BallParams {
-  int throws = 100;      ///< directions and points to aim at, both random; those that miss are thrown anew
-  int speeds = 1;        ///< of each, evenly from the slowest to the fastest; 1: one of its own, random
+  int throws = 100;      ///< directions, points to aim at and speeds, all random; misses are thrown anew
   double radius = 0.05;  ///< of the diagonal of the body's box
   double slowest = 3, fastest = 15;  ///< m/s
   std::int64_t seed = 1;
 };
-/// `height` of an example is the ball's speed. Searched as drops are; γ, α, repeats and seeds are of
-/// `params`.
-DropExamples ballsOf(const Body& body, const TrainDegreeParams& params, const BallParams& balls);
+/// Searched as drops are; γ, α, repeats and seeds are of `params`.
+DropExamples thrownBalls(const Body& body, const TrainDegreeParams& params, const BallParams& balls);
+/// As many hits as `params` has orientations, each with several speeds from the slowest to the fastest.
+DropExamples ballsToLearnFrom(const Body& body, const TrainDegreeParams& params, const BallParams& balls);
 
 WeightField fieldOf(const Body& body, const DropExamples& all, const DropExample& one);
 

@@ -178,12 +178,19 @@ TEST_F(ByModel, GrowsTheForetoldNumberOfSites) {
     const Sites sites = valueOf(
         predict(field, body.embedding, {.gamma = params.gamma, .seed = 4, .outside = OutsideModel::Predict}));
     EXPECT_EQ(sites.positions.cols(), estimate.degree);
+    EXPECT_EQ(sites.gamma, params.gamma);
+    EXPECT_FALSE(sites.degreeGiven);
     EXPECT_NEAR(estimate.degree, drop.example.degree[0], 2 + 0.35 * drop.example.degree[0]);
     const Sites asked = valueOf(
         predictDegree(field, *body.embedding, {.gamma = 1, .degree = estimate.degree, .seed = 4}, Exec{}));
     EXPECT_EQ(asked.positions, sites.positions);
     const Sites more = valueOf(predict(field, body.embedding, {.gamma = 1, .degree = 5}));
     EXPECT_EQ(more.positions.cols(), 5);  // a number asked for goes before the model
+    EXPECT_TRUE(more.degreeGiven);
+    const Sites searched =
+        valueOf(predict(field, body.embedding, {.gamma = params.gamma, .by = DegreeBy::Search}));
+    EXPECT_EQ(searched.positions,
+              valueOf(predictDegree(field, *body.embedding, {.gamma = params.gamma}, Exec{})).positions);
   }
 }
 
