@@ -39,8 +39,6 @@ struct Common {
   cholmod_common c;
 };
 
-constexpr std::size_t kWorthABlock = 3;  // loads: fewer are faster one by one
-
 void useOneThread() {
   static const bool once = (openblas_set_num_threads(1), true);
   (void)once;
