@@ -44,12 +44,6 @@ struct Element {
   Element(std::span<const Vec3> nodes, const Tetra& t)
       : Element(nodes[at(t[0])], nodes[at(t[1])], nodes[at(t[2])], nodes[at(t[3])]) {}
 
-  /// Stiffness per volume between nodes i (row) and j: λ g_i g_jᵀ + μ g_j g_iᵀ + μ (g_i·g_j) I.
-  Mat3 stiffness(std::size_t i, std::size_t j, const Lame& lame) const {
-    const Vec3 &gi = gradient[i], &gj = gradient[j];
-    return lame.lambda * gi * gj.transpose() + lame.mu * gj * gi.transpose() +
-           lame.mu * gi.dot(gj) * Mat3::Identity();
-  }
   Mat3 strain(std::span<const Vec3> u, const Tetra& t) const {
     // Differences to one node: a large common translation costs no digits.
     Mat3 f = Mat3::Zero();
@@ -58,12 +52,6 @@ struct Element {
   }
   static Mat3 stress(const Mat3& strain, const Lame& lame) {
     return lame.lambda * strain.trace() * Mat3::Identity() + 2 * lame.mu * strain;
-  }
-  /// W(ε), as a sum of squares: bulk and deviatoric.
-  static double energyDensity(const Mat3& strain, const Lame& lame) {
-    const double trace = strain.trace();
-    const Mat3 deviator = strain - trace / 3 * Mat3::Identity();
-    return 0.5 * (lame.lambda + 2 * lame.mu / 3) * trace * trace + lame.mu * deviator.squaredNorm();
   }
 };
 

@@ -124,21 +124,4 @@ ElementGradients::ElementGradients(const Element& linear, const ElementRule& rul
   }
 }
 
-Mat3 ElementGradients::strain(std::size_t point, std::span<const Vec3> u,
-                              std::span<const Index> nodes) const {
-  // Differences to one node: a large common translation costs no digits.
-  const Vec3& first = u[sherd::at(nodes[0])];
-  Mat3 f = Mat3::Zero();
-  for (std::size_t i = 1; i < nodes_; ++i)
-    f.noalias() += (u[sherd::at(nodes[i])] - first) * gradient_[point][i].transpose();
-  return 0.5 * (f + f.transpose());
-}
-
-double ElementGradients::meanDilatation(std::span<const Vec3> u, std::span<const Index> nodes) const {
-  const Vec3& first = u[sherd::at(nodes[0])];
-  double sum = 0;
-  for (std::size_t i = 1; i < nodes_; ++i) sum += (u[sherd::at(nodes[i])] - first).dot(mean_[i]);
-  return sum;
-}
-
 }  // namespace sherd

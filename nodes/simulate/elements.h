@@ -76,11 +76,6 @@ class ElementGradients {
   /// Mean over the element, of the shape functions' gradients.
   const Vec3& mean(std::size_t node) const { return mean_[node]; }
 
-  /// ε at a point, 1. `nodes` are the element's (Elements::nodesOf).
-  Mat3 strain(std::size_t point, std::span<const Vec3> u, std::span<const Index> nodes) const;
-  /// Mean of tr ε, 1.
-  double meanDilatation(std::span<const Vec3> u, std::span<const Index> nodes) const;
-
  private:
   std::size_t points_, nodes_;
   std::array<std::array<Vec3, kMostElementNodes>, 4> gradient_;

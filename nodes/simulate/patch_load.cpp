@@ -39,8 +39,8 @@ Vec3 areaVector(const std::array<Vec3, 3>& t) { return 0.5 * (t[1] - t[0]).cross
 
 }  // namespace
 
-PatchLoader::PatchLoader(std::shared_ptr<const Elements> elements)
-    : elements_(std::move(elements)), mesh_(&elements_->mesh()) {
+PatchLoader::PatchLoader(std::shared_ptr<const Elements> elements, double piece)
+    : elements_(std::move(elements)), mesh_(&elements_->mesh()), piece_(piece) {
   tetBegin_.assign(mesh_->surface->triangles.size() + 1, 0);
   for (const Index triangle : mesh_->held) ++tetBegin_[at(triangle) + 1];
   for (std::size_t i = 1; i < tetBegin_.size(); ++i) tetBegin_[i] += tetBegin_[i - 1];
@@ -110,7 +110,7 @@ void PatchLoader::samplePiece(const Vec3& point, double radius, Index triangle,
                               const std::array<Vec3, 3>& piece, std::vector<Sample>& samples) const {
   if ((closestOnTriangle(point, piece[0], piece[1], piece[2]) - point).norm() >= radius) return;
   std::size_t from = 0;
-  if (longestEdge(piece, from) > radius / 4) {
+  if (longestEdge(piece, from) > piece_ * radius) {
     const Vec3 middle = 0.5 * (piece[from] + piece[(from + 1) % 3]), &apex = piece[(from + 2) % 3];
     samplePiece(point, radius, triangle, {piece[from], middle, apex}, samples);
     samplePiece(point, radius, triangle, {middle, piece[(from + 1) % 3], apex}, samples);
@@ -153,6 +153,10 @@ Result<void> PatchLoader::handToNodes(const Sample& sample, const Vec3& force,
   const std::span<const Index> nodes = elements_->nodesOf(at(best));
   for (std::size_t i = 0; i < nodes.size(); ++i) nodeForce[at(nodes[i])] += value[i] * force;
   return {};
+}
+
+std::size_t PatchLoader::pointCount(const Vec3& point, const Vec3& force, double radius) const {
+  return quadrature(point, radius, patch(point, force, radius).triangles).size();
 }
 
 Result<void> PatchLoader::add(const Vec3& point, const Vec3& force, double radius,

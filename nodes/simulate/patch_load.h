@@ -12,23 +12,28 @@
 
 namespace sherd {
 
+/// The longest edge of a quadrature piece, in radii of the patch: an eighth of its width.
+inline constexpr double kPatchPiece = 0.25;
+
 /// Finds patches on one body and loads them. Building costs O(tets + held triangles).
 class PatchLoader {
  public:
-  explicit PatchLoader(std::shared_ptr<const Elements> elements);
+  explicit PatchLoader(std::shared_ptr<const Elements> elements, double piece = kPatchPiece);
 
   /// Adds the nodal forces (N, per element node) of `force` (N, rest space) acting at `point` (m, on or near
   /// the surface).
   ///
   /// The patch is what lies within `radius` (m, > 0) of the point, is connected within it to the surface at
   /// the point (so that the far side of a thin wall isn't loaded), and faces the force (n·F < 0; all of it
-  /// where nothing does). Pressure falls off like Hertz's, √(1 − r²/a²), by quadrature on pieces of an eighth
-  /// of the patch's width or less. A tetrahedron's nodes get the values of their shape functions, which are
+  /// where nothing does). Pressure falls off like Hertz's, √(1 − r²/a²), by quadrature on pieces of
+  /// `piece` or less. A tetrahedron's nodes get the values of their shape functions, which are
   /// exact for force and moment. A patch that is lopsided about the point would act off it: the traction gets
   /// the smallest rigid rotation of forces that makes net force and moment those of `force` at `point`.
   /// Errors: the tetrahedra don't hold the surface there. Cost O(triangles) to find the patch, then O(pieces
   /// of the patch × tetrahedra per triangle).
   Result<void> add(const Vec3& point, const Vec3& force, double radius, std::vector<Vec3>& nodeForce) const;
+  /// How many points that takes.
+  std::size_t pointCount(const Vec3& point, const Vec3& force, double radius) const;
 
  private:
   struct Sample {
@@ -51,6 +56,7 @@ class PatchLoader {
 
   std::shared_ptr<const Elements> elements_;
   const TetMesh* mesh_;  ///< of elements_
+  double piece_;
   std::vector<Index> tetBegin_,
       tetHolding_;  ///< per surface triangle, the tetrahedra that hold (a part of) it
 };

@@ -154,7 +154,7 @@ NodeType simulateNode() {
   addMaterial(node);
   addContact(node);
   addElements(node);
-  node.uninterruptible("CHOLMOD's factorization", 150);  // of 20,000 linear tetrahedra; 8 s of quadratic ones
+  node.uninterruptible("CHOLMOD's factorization", 150);  // of 20,000 linear tetrahedra; 4 s of quadratic ones
   node.output<EnergyField>("energy", "strain energy per tetrahedron and node");
   node.output<Impact>("impact", "contacts and motion at the first impact");
   node.output<double>("work", "total strain energy, J");

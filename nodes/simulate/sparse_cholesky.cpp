@@ -12,7 +12,7 @@
 extern "C" {
 void openblas_set_num_threads(int threads);
 // Part of libgomp, which CHOLMOD brings along where it was built with OpenMP.
-void omp_set_num_threads(int threads) __attribute__((weak));
+void omp_set_max_active_levels(int levels) __attribute__((weak));
 }
 
 namespace sherd {
@@ -39,12 +39,12 @@ struct Common {
   cholmod_common c;
 };
 
-constexpr std::size_t kWorthABlock = 3;  // loads: fewer are faster one by one
-
 void useOneThread() {
   static const bool once = (openblas_set_num_threads(1), true);
   (void)once;
-  if (omp_set_num_threads != nullptr) omp_set_num_threads(1);  // this thread's setting
+  // CHOLMOD asks for four threads by itself, whatever their number is set to: small tasks that mostly wait
+  // for each other. Regions that may not be active run on the thread that comes to them.
+  if (omp_set_max_active_levels != nullptr) omp_set_max_active_levels(0);
 }
 
 /// A view of arrays as a CHOLMOD matrix, lower triangle.

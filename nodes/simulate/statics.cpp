@@ -1,10 +1,12 @@
 #include "simulate/statics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "base/parallel.h"
 #include "geometry/disjoint_sets.h"
+#include "simulate/element_response.h"
 #include "simulate/nested_dissection.h"
 #include "simulate/supernodal_solve.h"
 
@@ -15,6 +17,8 @@ namespace {
 // second is what makes work and strain energy equal.
 constexpr double kResidual = 1e-10, kEnergyResidual = 1e-12;
 constexpr int kMostRefinements = 4;
+
+static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
 Result<void> checkTets(const TetMesh& mesh) {
   if (mesh.tets.empty()) return failure("the body has no tetrahedra");
@@ -208,59 +212,42 @@ void Statics::removeRigidMotion(std::vector<Vec3>& displacement) const {
   }
 }
 
-std::vector<double> Statics::nodalDilatation(std::span<const Vec3> u) const {
-  const TetMesh& mesh = elements_->mesh();
-  std::vector<double> theta(mesh.nodes.size(), 0.0);
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    const double trace = Element(nodes_, mesh.tets[t]).strain(u, mesh.tets[t]).trace();
-    for (const Index n : mesh.tets[t]) theta[at(n)] += stiffnessVolume_[t] / 4 * trace;
+void Statics::respond(std::size_t width, const double* displacement, double* force, double* energy) const {
+  const ElementResponse response(*elements_, rules_, nodes_, stiffnessVolume_, split_, lame_.mu);
+  std::vector<double> theta;
+  if (!averages_.empty()) {
+    theta.assign(width * elements_->mesh().nodes.size(), 0.0);
+    response.addDilatation(width, displacement, theta.data());
+    for (std::size_t i = 0; i < theta.size(); ++i) theta[i] /= averages_[0].volume[i / width];
   }
-  for (std::size_t n = 0; n < theta.size(); ++n) theta[n] /= averages_[0].volume[n];
-  return theta;
+  response.add({width, displacement, theta.empty() ? nullptr : theta.data(), force, energy});
 }
 
-/// One tetrahedron's part of a response. `theta`: nodal volume strains, where the averaged part of λ acts on
-/// them.
-void Statics::addElement(std::size_t t, const ElementGradients& g, std::span<const Vec3> u,
-                         std::span<const double> theta, Response& out) const {
-  const Lame full(split_.full, lame_.mu);
-  const std::span<const Index> own = elements_->nodesOf(t);
-  double pressure = 0, density = 0;  // of the averaged part
-  if (!theta.empty()) {
-    for (const Index n : own) {
-      pressure += split_.averaged * theta[at(n)] / 4;
-      density += split_.averaged / 2 * theta[at(n)] * theta[at(n)] / 4;
-    }
-  } else if (split_.averaged > 0) {
-    const double mean = g.meanDilatation(u, own);
-    pressure = split_.averaged * mean;
-    density = split_.averaged / 2 * mean * mean;
-  }
-  for (std::size_t q = 0; q < g.points(); ++q) {
-    const Mat3 strain = g.strain(q, u, own);
-    const Mat3 stress = stiffnessVolume_[t] * g.weight() * Element::stress(strain, full);
-    density += g.weight() * Element::energyDensity(strain, full);
-    for (std::size_t i = 0; i < own.size(); ++i) out.force[at(own[i])].noalias() += stress * g.at(q, i);
-  }
-  if (pressure != 0)
-    for (std::size_t i = 0; i < own.size(); ++i)
-      out.force[at(own[i])] += stiffnessVolume_[t] * pressure * g.mean(i);
-  out.energy[t] = stiffnessVolume_[t] * density;
-}
-
-/// What each of several displacements gives, in one walk over the elements.
+/// What each of several displacements gives, in walks over the elements that take kSolveWidth of them.
 std::vector<Statics::Response> Statics::respond(std::span<const std::vector<Vec3>* const> u) const {
-  const TetMesh& mesh = elements_->mesh();
+  const std::size_t numbers = 3 * nodes_.size(), tets = stiffnessVolume_.size();
   std::vector<Response> out(u.size());
-  std::vector<std::vector<double>> theta(u.size());
-  for (std::size_t i = 0; i < u.size(); ++i) {
-    out[i].force.assign(nodes_.size(), Vec3::Zero());
-    out[i].energy.resize(mesh.tets.size());
-    if (!averages_.empty()) theta[i] = nodalDilatation(*u[i]);
+  for (Response& r : out) {
+    r.force.assign(nodes_.size(), Vec3::Zero());
+    r.energy.resize(tets);
   }
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    const ElementGradients g = rules_.gradients(nodes_, t);
-    for (std::size_t i = 0; i < u.size(); ++i) addElement(t, g, *u[i], theta[i], out[i]);
+  if (u.size() < kWorthABlock) {
+    for (std::size_t i = 0; i < u.size(); ++i)
+      respond(1, u[i]->data()->data(), out[i].force.data()->data(), out[i].energy.data());
+    return out;
+  }
+  std::vector<double> wide(kSolveWidth * numbers, 0.0), force(kSolveWidth * numbers, 0.0),
+      energy(kSolveWidth * tets);
+  for (std::size_t begin = 0; begin < u.size(); begin += kSolveWidth) {
+    const std::size_t count = std::min(kSolveWidth, u.size() - begin);
+    for (std::size_t n = 0; n < numbers; ++n)
+      for (std::size_t w = 0; w < count; ++w) wide[n * kSolveWidth + w] = (*u[begin + w])[n / 3][n % 3];
+    std::fill(force.begin(), force.end(), 0.0);
+    respond(kSolveWidth, wide.data(), force.data(), energy.data());
+    for (std::size_t n = 0; n < numbers; ++n)
+      for (std::size_t w = 0; w < count; ++w) out[begin + w].force[n / 3][n % 3] = force[n * kSolveWidth + w];
+    for (std::size_t t = 0; t < tets; ++t)
+      for (std::size_t w = 0; w < count; ++w) out[begin + w].energy[t] = energy[t * kSolveWidth + w];
   }
   return out;
 }

@@ -133,11 +133,9 @@ class Statics {
   std::vector<Wrench> wrenches(std::span<const Vec3> force) const;
   std::vector<Vec3> inertialForce(const std::vector<Wrench>& acceleration) const;
   void removeRigidMotion(std::vector<Vec3>& displacement) const;
-  void addElement(std::size_t t, const ElementGradients& g, std::span<const Vec3> u,
-                  std::span<const double> theta, Response& out) const;
   std::vector<Response> respond(std::span<const std::vector<Vec3>* const> displacements) const;
   Response respondToOne(std::span<const Vec3> displacement) const;
-  std::vector<double> nodalDilatation(std::span<const Vec3> displacement) const;
+  void respond(std::size_t width, const double* displacement, double* force, double* energy) const;
   void takeStep(Progress& progress) const;
   bool isSolved(Progress& progress) const;
   void solveBlock(std::span<const std::vector<Vec3>> forces, double youngModulus,

@@ -3,24 +3,25 @@
 #include <algorithm>
 #include <vector>
 
-// The run-time choice is made by the dynamic linker, before sanitizers are set up: they go without.
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define SHERD_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define SHERD_CLONES
-#endif
+#include "simulate/clones.h"
 
 namespace sherd {
 namespace {
 
 constexpr std::size_t kPanel = 32;  // columns that are walked at once: as many streams as prefetching follows
-constexpr std::size_t kPack = 4;    // lanes of one vector
-constexpr std::size_t kTile = 4;    // rows or columns at once: with two vectors of lanes, all registers
 constexpr std::size_t kAhead = 32;  // rows that are fetched ahead where a panel is walked across its columns
 constexpr std::size_t kTogether = 8;  // columns of a single load at once
 
-typedef double Pack __attribute__((vector_size(kPack * sizeof(double)), aligned(sizeof(double)), may_alias));
+/// Loads in one vector. A tile is as many rows or columns, with two such vectors for each: half of all
+/// registers or more. (A template's argument would lose the vector's attributes.)
+struct Four {
+  static constexpr std::size_t count = 4;
+  typedef double Pack __attribute__((vector_size(32), aligned(sizeof(double)), may_alias));
+};
+struct Eight {
+  static constexpr std::size_t count = 8;
+  typedef double Pack __attribute__((vector_size(64), aligned(sizeof(double)), may_alias));
+};
 
 /// Dense columns below a panel's triangle.
 struct Columns {
@@ -53,12 +54,13 @@ SHERD_CLONES void subtractDown(const Columns& l, const double* __restrict__ x, d
 }
 
 /// Some rows of it, for all loads; x and y as solveSupernodal has them.
-template <std::size_t Rows>
+template <class Loads, std::size_t Rows>
 [[gnu::always_inline]] inline void subtractRows(const Columns& l, std::size_t row, const double* x,
                                                 double* y) {
-  for (std::size_t lane = 0; lane < kSolveWidth; lane += 2 * kPack) {
+  using Pack = typename Loads::Pack;
+  for (std::size_t lane = 0; lane < kSolveWidth; lane += 2 * Loads::count) {
     Pack sum[Rows][2];
-#pragma GCC unroll 4
+#pragma GCC unroll 8
     for (std::size_t r = 0; r < Rows; ++r) {
       const Pack* from = reinterpret_cast<const Pack*>(y + (row + r) * kSolveWidth + lane);
       sum[r][0] = from[0];
@@ -69,13 +71,13 @@ template <std::size_t Rows>
       if (lane == 0) __builtin_prefetch(a + kAhead);
       const Pack* right = reinterpret_cast<const Pack*>(x + j * kSolveWidth + lane);
       const Pack x0 = right[0], x1 = right[1];
-#pragma GCC unroll 4
+#pragma GCC unroll 8
       for (std::size_t r = 0; r < Rows; ++r) {
         sum[r][0] -= a[r] * x0;
         sum[r][1] -= a[r] * x1;
       }
     }
-#pragma GCC unroll 4
+#pragma GCC unroll 8
     for (std::size_t r = 0; r < Rows; ++r) {
       Pack* to = reinterpret_cast<Pack*>(y + (row + r) * kSolveWidth + lane);
       to[0] = sum[r][0];
@@ -84,11 +86,24 @@ template <std::size_t Rows>
   }
 }
 
-SHERD_CLONES void subtractDownWide(const Columns& l, const double* x, double* y) {
+template <class Loads>
+[[gnu::always_inline]] inline void subtractAllRows(const Columns& l, const double* x, double* y) {
   std::size_t row = 0;
-  for (; row + kTile <= l.rows; row += kTile) subtractRows<kTile>(l, row, x, y);
-  for (; row < l.rows; ++row) subtractRows<1>(l, row, x, y);
+  for (; row + Loads::count <= l.rows; row += Loads::count) subtractRows<Loads, Loads::count>(l, row, x, y);
+  for (; row < l.rows; ++row) subtractRows<Loads, 1>(l, row, x, y);
 }
+
+SHERD_BASELINE void subtractDownWide(const Columns& l, const double* x, double* y) {
+  subtractAllRows<Four>(l, x, y);
+}
+#ifdef SHERD_VERSIONS
+SHERD_AVX2 void subtractDownWide(const Columns& l, const double* x, double* y) {
+  subtractAllRows<Four>(l, x, y);
+}
+SHERD_AVX512 void subtractDownWide(const Columns& l, const double* x, double* y) {
+  subtractAllRows<Eight>(l, x, y);
+}
+#endif
 
 // x_j −= Σ_i L_ij y_i, i ascending.
 
@@ -109,12 +124,13 @@ SHERD_CLONES void subtractUp(const Columns& l, const double* __restrict__ y, dou
 }
 
 /// Some columns of it, for all loads.
-template <std::size_t Count>
+template <class Loads, std::size_t Count>
 [[gnu::always_inline]] inline void subtractColumns(const Columns& l, std::size_t column, const double* y,
                                                    double* x) {
-  for (std::size_t lane = 0; lane < kSolveWidth; lane += 2 * kPack) {
+  using Pack = typename Loads::Pack;
+  for (std::size_t lane = 0; lane < kSolveWidth; lane += 2 * Loads::count) {
     Pack sum[Count][2];
-#pragma GCC unroll 4
+#pragma GCC unroll 8
     for (std::size_t c = 0; c < Count; ++c) {
       const Pack* from = reinterpret_cast<const Pack*>(x + (column + c) * kSolveWidth + lane);
       sum[c][0] = from[0];
@@ -124,13 +140,13 @@ template <std::size_t Count>
     for (std::size_t i = 0; i < l.rows; ++i) {
       const Pack* right = reinterpret_cast<const Pack*>(y + i * kSolveWidth + lane);
       const Pack y0 = right[0], y1 = right[1];
-#pragma GCC unroll 4
+#pragma GCC unroll 8
       for (std::size_t c = 0; c < Count; ++c) {
         sum[c][0] -= a[i + c * l.stride] * y0;
         sum[c][1] -= a[i + c * l.stride] * y1;
       }
     }
-#pragma GCC unroll 4
+#pragma GCC unroll 8
     for (std::size_t c = 0; c < Count; ++c) {
       Pack* to = reinterpret_cast<Pack*>(x + (column + c) * kSolveWidth + lane);
       to[0] = sum[c][0];
@@ -139,11 +155,25 @@ template <std::size_t Count>
   }
 }
 
-SHERD_CLONES void subtractUpWide(const Columns& l, const double* y, double* x) {
+template <class Loads>
+[[gnu::always_inline]] inline void subtractAllColumns(const Columns& l, const double* y, double* x) {
   std::size_t column = 0;
-  for (; column + kTile <= l.columns; column += kTile) subtractColumns<kTile>(l, column, y, x);
-  for (; column < l.columns; ++column) subtractColumns<1>(l, column, y, x);
+  for (; column + Loads::count <= l.columns; column += Loads::count)
+    subtractColumns<Loads, Loads::count>(l, column, y, x);
+  for (; column < l.columns; ++column) subtractColumns<Loads, 1>(l, column, y, x);
 }
+
+SHERD_BASELINE void subtractUpWide(const Columns& l, const double* y, double* x) {
+  subtractAllColumns<Four>(l, y, x);
+}
+#ifdef SHERD_VERSIONS
+SHERD_AVX2 void subtractUpWide(const Columns& l, const double* y, double* x) {
+  subtractAllColumns<Four>(l, y, x);
+}
+SHERD_AVX512 void subtractUpWide(const Columns& l, const double* y, double* x) {
+  subtractAllColumns<Eight>(l, y, x);
+}
+#endif
 
 /// The two operations above and the triangle of one panel, by width.
 template <std::size_t Width>

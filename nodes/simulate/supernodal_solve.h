@@ -11,6 +11,8 @@ namespace sherd {
 
 /// Loads that are solved side by side.
 inline constexpr std::size_t kSolveWidth = 16;
+/// Fewer loads are faster one by one.
+inline constexpr std::size_t kWorthABlock = 3;
 
 /// A view of CHOLMOD's simplest form of LLᵀ: dense column blocks over lists of rows (cholmod_factor,
 /// "supernodal").

@@ -6,7 +6,7 @@
 
 namespace sherd::bench {
 
-Result<std::shared_ptr<const TetMesh>> conformingMesh(const TriMesh& surface, double edge) {
+Result<std::shared_ptr<const TetMesh>> conformingMesh(const TriMesh& surface, double edge, std::size_t step) {
   const Box box = boxOf(surface.positions);
   std::vector<Vec3> unit;
   for (const Vec3& p : surface.positions) unit.emplace_back((p - box.centre()) / box.diagonal());
@@ -20,7 +20,7 @@ Result<std::shared_ptr<const TetMesh>> conformingMesh(const TriMesh& surface, do
   volume.box.add(volume.box.low - Vec3::Constant(2 * voxel));
   volume.box.add(volume.box.high + Vec3::Constant(2 * voxel));
   volume.precision = voxel / 100;
-  volume.seeds = unit;
+  for (std::size_t i = 0; i < unit.size(); i += step) volume.seeds.push_back(unit[i]);
   SHERD_ASSIGN(VolumeMesh mesh, VolumeMesh::refine(volume, Exec{}));
   SHERD_CHECK(mesh.removeSlivers(
       8, 8, [](const Tetrahedra&) { return true; }, Exec{}));

@@ -20,33 +20,25 @@
 #include <string>
 
 #include "base/rng.h"
-#include "bench/conforming.h"
+#include "bench/cages.h"
 #include "bench/measured_table.h"
+#include "bench/or_exit.h"
 #include "bench/parts.h"
 #include "bench/plot.h"
-#include "load_mesh/load_mesh.h"
+#include "simulate/patch_load.h"
 #include "simulate/simulate.h"
 #include "simulate/statics.h"
 #include "simulate/supernodal_solve.h"
 #include "support/elastic_loads.h"
-#include "tetrahedralize/tetrahedralize.h"
 
 namespace sherd::bench {
 namespace {
 
-namespace fs = std::filesystem;
 using Shared = std::shared_ptr<const TetMesh>;
 constexpr double kYoung = 5e10;
 constexpr ElementOrder kOrders[] = {ElementOrder::Linear, ElementOrder::Quadratic};
 
 const char* nameOf(ElementOrder order) { return order == ElementOrder::Linear ? "linear" : "quadratic"; }
-
-template <class T>
-T orExit(Result<T> result) {
-  if (result.ok()) return std::move(result).value();
-  fmt::print(stderr, "bench_simulate: {}\n", result.error().text());
-  std::exit(1);
-}
 
 std::shared_ptr<const Statics> factored(const Shared& mesh, const StaticsParams& params) {
   return std::make_shared<const Statics>(orExit(Statics::factor(mesh, params, Exec{})));
@@ -166,6 +158,37 @@ double energyOf(const Shared& mesh, const SimulateParams& params) {
   return totalEnergy(orExit(simulate(mesh, params, Exec{})).energy);
 }
 
+/// Energy against the points of the patch's quadrature.
+Table quadrature() {
+  Table table({"pieces, radii", "elements", "points", "energy, J", "against the finest"});
+  const Shared cube = families::shared(families::box(8, 8, 8, Vec3(0.2, 0.2, 0.2)));
+  SimulateParams params = dropped();
+  params.contactRadius = 0.03;
+  const Impact impact = orExit(dropUntilImpact(*cube, params, Exec{}));
+  for (const ElementOrder order : kOrders) {
+    const auto statics = factored(cube, {params.body.poissonRatio, order});
+    const auto measured = [&](double piece) {
+      const PatchLoader loader(statics->elements(), piece);
+      std::vector<Vec3> force(statics->elements()->nodeCount(), Vec3::Zero());
+      std::size_t points = 0;
+      for (const Contact& c : impact.contacts) {
+        const Vec3 peak = kHertzPeak / c.duration * c.impulse;
+        points += loader.pointCount(c.point, peak, c.radius);
+        if (const auto done = loader.add(c.point, peak, c.radius, force); !done.ok())
+          fmt::print(stderr, "{}\n", done.error().text());
+      }
+      return std::pair(points, statics->solve(force, params.body.youngModulus).work);
+    };
+    const double finest = measured(1.0 / 64).second;
+    for (const double piece : {2.0, 1.0, 0.5, kPatchPiece, 0.125, 0.0625}) {
+      const auto [points, energy] = measured(piece);
+      table.row({fmt::format("{:g}{}", piece, piece == kPatchPiece ? " (default)" : ""), nameOf(order),
+                 count(points), fmt::format("{:.5g}", energy), scientific(std::abs(energy / finest - 1))});
+    }
+  }
+  return table;
+}
+
 void contact(const Options& options, std::string& report) {
   Table steps({"time step, s", "energy, J", "against the finest"});
   const Shared cube = families::shared(families::box(8, 8, 8, Vec3(0.2, 0.2, 0.2)));
@@ -205,8 +228,12 @@ void contact(const Options& options, std::string& report) {
   steps.write(options.out / "contact_steps.csv");
   meshes.write(options.out / "contact_meshes.csv");
   writePlots(options.out / "contact.svg", {plot});
-  report += "### Contact\n\nA cube of 0.2 m, dropped spinning.\n\n" + steps.markdown() + "\n" +
-            meshes.markdown() + "\n";
+  const Table points = quadrature();
+  points.write(options.out / "contact_quadrature.csv");
+  report +=
+      "### Contact\n\nA cube of 0.2 m, dropped spinning.\n\n" + steps.markdown() + "\n" + meshes.markdown() +
+      "\nThe same on 3,072 tetrahedra with a patch of 0.03 m, over the quadrature of its pressure:\n\n" +
+      points.markdown() + "\n";
 }
 
 // Solver.
@@ -265,60 +292,6 @@ void solver(const Options& options, std::string& report) {
   table.write(options.out / "solver.csv");
   report += fmt::format("### Factoring and solving\n\nSolid blocks; a block of loads is {} of them.\n\n{}\n",
                         kSolveWidth, table.markdown());
-}
-
-// Cages.
-
-void cages(const Options& options, std::string& report) {
-  const Vec3 turns[] = {Vec3(25, 10, 40), Vec3(80, 0, 20), Vec3(160, 30, 10)};
-  Table table({"model", "mesh", "elements", "tets", "nodes", "cpu ms", "drop 1", "drop 2", "drop 3"});
-  for (const char* model : {"horse", "bunny"}) {
-    const std::string file = fmt::format(SHERD_SOURCE_DIR "/../shared/meshes/{}.obj", model);
-    if (!fs::exists(file)) {
-      report += fmt::format("{} is left out: it is absent.\n\n", model);
-      continue;
-    }
-    LoadMeshParams loading;
-    loading.file = file;
-    const auto surface = std::make_shared<const TriMesh>(orExit(loadMesh(loading, Exec{})));
-    std::vector<std::pair<std::string, Shared>> meshes{
-        {"conforming", orExit(conformingMesh(*surface, 0.03))}};
-    for (const int tets : {1250, 5000, 20000})
-      meshes.emplace_back(
-          "cage", std::make_shared<const TetMesh>(orExit(tetrahedralize(surface, {tets, 0}, Exec{}))));
-    std::vector<Impact> impacts;
-    for (const Vec3& turn : turns) {
-      SimulateParams params;
-      params.orientation = turn;
-      impacts.push_back(orExit(dropUntilImpact(*meshes[1].second, params, Exec{})));
-    }
-    std::vector<ImpactEnergy> reference;
-    for (const auto& [kind, mesh] : meshes)
-      for (const ElementOrder order : {ElementOrder::Quadratic, ElementOrder::Linear}) {
-        if (order == ElementOrder::Quadratic && mesh->tets.size() > 15000 && !reference.empty()) continue;
-        const std::clock_t start = std::clock();
-        const auto energies = orExit(impactEnergies(mesh, impacts, Material{}, order, Exec{}));
-        const double ms = 1000 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-        if (reference.empty()) reference = energies;
-        std::vector<std::string> row{model,
-                                     kind,
-                                     nameOf(order),
-                                     count(mesh->tets.size()),
-                                     count(Elements(mesh, order).nodeCount()),
-                                     number(ms)};
-        for (std::size_t i = 0; i < impacts.size(); ++i)
-          row.push_back(fmt::format("{:.4g} J ({:+.1f} %)", energies[i].total,
-                                    100 * (energies[i].total / reference[i].total - 1)));
-        fmt::print("{}\n", fmt::join(row, " "));
-        std::fflush(stdout);
-        table.row(row);
-      }
-  }
-  table.write(options.out / "cages.csv");
-  report +=
-      "### Cages against meshes that end at the surface\n\nEach model's first row is the reference of those "
-      "below.\n\n" +
-      table.markdown() + "\n";
 }
 
 }  // namespace

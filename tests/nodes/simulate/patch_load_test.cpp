@@ -66,6 +66,31 @@ TEST(PatchLoad, QuadraticElementsTakeTheSameForceAndMoment) {
   EXPECT_LT(moment.norm(), 1e-11);
 }
 
+/// Hertz's pressure has a mean square distance of 2/5 a²; quadratic elements hand on squares exactly.
+TEST(PatchLoad, PressureConvergesToHertzs) {
+  const auto mesh = shared(box(10, 2, 10, Vec3(1, 0.2, 1)));
+  const auto elements = std::make_shared<const Elements>(mesh, ElementOrder::Quadratic);
+  const std::vector<Vec3> x = elements->positions(mesh->nodes);
+  const Vec3 point(0.52, 0, 0.47), force(0, 100, 0);
+  const double radius = 0.25;
+  double last = 1;
+  std::size_t points = 0;
+  for (const double piece : {1.0, kPatchPiece, kPatchPiece / 4}) {
+    const PatchLoader loader(elements, piece);
+    std::vector<Vec3> nodal(elements->nodeCount(), Vec3::Zero());
+    ASSERT_TRUE(loader.add(point, force, radius, nodal).ok());
+    double square = 0;
+    for (std::size_t n = 0; n < nodal.size(); ++n)
+      square += nodal[n].y() / 100 * (x[n] - point).squaredNorm();
+    const double error = std::abs(square / (0.4 * radius * radius) - 1);
+    EXPECT_LT(error, last);
+    last = error;
+    EXPECT_GT(loader.pointCount(point, force, radius), 3 * points);
+    points = loader.pointCount(point, force, radius);
+  }
+  EXPECT_LT(last, 2e-3);
+}
+
 TEST(PatchLoad, ReachesAsFarAsTheRadius) {
   const auto mesh = shared(box(10, 2, 10, Vec3(1, 0.2, 1)));
   const std::vector<Vec3> nodal = loaded(mesh, Vec3(0.5, 0, 0.5), Vec3(0, 100, 0), 0.25);
