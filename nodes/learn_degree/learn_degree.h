@@ -88,7 +88,8 @@ struct DegreeEstimate {
 enum class Deviation { Unknown, Known };
 
 /// `weights` and `embedding` that checkValidity accepts. No more than 2^20 pieces are foretold. Cost O(nodes
-/// · (components + dimensions) + examples · components); with the deviation also O(centres²).
+/// · (components + dimensions) + examples · components + N (dimensions + log N)); with the deviation also
+/// O(centres²).
 DegreeEstimate estimateDegree(const DegreeModel& model, const WeightField& weights,
                               const Embedding& embedding, Deviation deviation = Deviation::Unknown);
 
