@@ -7,8 +7,7 @@
 // through log E_D(N − 1) and log E_D(N) over log N falls to γ: N = ⌈ν⌉.
 //
 // Three methods.
-// - `Process`: a Gaussian process for y = log ν − log ν_t, where ν_t is the number of cells of a fixed tree
-// over
+// - `Process`: a Gaussian process for y = log ν − log ν_t. ν_t is the number of cells of a fixed tree over
 //   the nodes that brings the energy below γ (learn_degree/split_tree.h): a stand-in for the search that
 //   takes microseconds and is off by a fifth. What is learned is by how much, from the logarithms of
 //     ν_t, and ν_t for 4 γ
@@ -27,8 +26,7 @@
 //   below `trainingError` of the mean degree, and no more of them than give the least error on groups left
 //   out.
 // - `Exact`: what the paper's `newrbe` does: a centre at every distinct example, interpolating the mean of
-// its
-//   degrees.
+//   its degrees.
 //
 // Principal components are taken until what is left of the centred examples X, ‖X − X_k‖_F, is at most
 // `tolerance` · ‖X‖_F: with 2 %, the components hold all but 0.0004 of the variance. At least one is kept.
@@ -88,7 +86,8 @@ struct DegreeEstimate {
 enum class Deviation { Unknown, Known };
 
 /// `weights` and `embedding` that checkValidity accepts. No more than 2^20 pieces are foretold. Cost O(nodes
-/// · (components + dimensions) + examples · components); with the deviation also O(centres²).
+/// · (components + dimensions) + examples · components + N (dimensions + log N)); with the deviation also
+/// O(centres²).
 DegreeEstimate estimateDegree(const DegreeModel& model, const WeightField& weights,
                               const Embedding& embedding, Deviation deviation = Deviation::Unknown);
 
