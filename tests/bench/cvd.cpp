@@ -116,7 +116,7 @@ void scalingRow(std::size_t nodes, int sites, Table& table) {
   const Eigen::MatrixXd at = start->sites();
   timeOf(
       name,
-      nodes * static_cast<std::size_t>(sites) > 10'000'000 ? (nodes > 1'000'000'000u / sites ? 1 : 3) : 10,
+      nodes * static_cast<std::size_t>(sites) > 10'000'000 ? (nodes > 1'000'000'000u / sites ? 2 : 3) : 10,
       [&] {
         Lloyd lloyd(*body.embedding, body.weights);
         for (Eigen::Index j = 0; j < at.cols(); ++j) lloyd.addSite(at.col(j), Exec{});

@@ -13,6 +13,8 @@
 #include "bench/measured_table.h"
 #include "bench/plot.h"
 #include "cvd/distance.h"
+#include "support/prepared_cells.h"
+#include "support/tet_families.h"
 
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
@@ -133,6 +135,18 @@ Body withFloatCoordinates(const Body& body) {
   return {rounded, body.weights};
 }
 
+/// Nodes on a lattice, equally far from many a pair of sites.
+Body wallOfCubes() {
+  const auto tets = families::shared(families::box(24, 20, 3, Vec3(1.02, 0.84, 0.12)));
+  auto embedding = std::make_shared<Embedding>();
+  embedding->tets = tets;
+  embedding->coordinates.resize(3, static_cast<Eigen::Index>(tets->nodes.size()));
+  for (std::size_t n = 0; n < tets->nodes.size(); ++n)
+    embedding->coordinates.col(static_cast<Eigen::Index>(n)) = tets->nodes[n];
+  embedding->diameter = boxOf(tets->nodes).diagonal();
+  return {embedding, test::volumeWeights(tets)};
+}
+
 struct Measured {
   double ms = 0, sameSites = 0, atTheEnd = 0, energy = 0;
   int passes = 0;
@@ -195,8 +209,8 @@ void precision(const Options& options, std::string& report) {
     }
     precisionOf(fmt::format("{}-{}", c.name, c.sites), bodyOf(c), c.sites, table, plot.series);
   }
-  precisionOf("20,000 nodes, 5 dimensions, 100", cloud(20'000, 5), 100, table, plot.series);
-  precisionOf("20,000 nodes, 64 dimensions, 100", cloud(20'000, 64), 100, table, plot.series);
+  precisionOf("wall of cubes-18", wallOfCubes(), 18, table, plot.series);
+  precisionOf("cloud in 64 dimensions-40", cloud(4000, 64), 40, table, plot.series);
   table.write(options.out / "precision.csv");
   writePlots(options.out / "precision.svg", {plot});
   report +=
