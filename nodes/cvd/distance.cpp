@@ -1,12 +1,6 @@
 #include "cvd/distance.h"
 
-// The run-time choice is made by the dynamic linker, before sanitizers are set up: they go without.
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define SHERD_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define SHERD_CLONES
-#endif
+#include "base/clones.h"
 
 namespace sherd {
 

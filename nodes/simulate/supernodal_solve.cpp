@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "simulate/clones.h"
+#include "base/clones.h"
 
 namespace sherd {
 namespace {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 
+#include "base/clones.h"
 #include "bench/cvd_parts.h"
 #include "bench/cvd_runs.h"
 #include "bench/measured_table.h"
@@ -15,13 +16,6 @@
 #include "cvd/distance.h"
 #include "support/prepared_cells.h"
 #include "support/tet_families.h"
-
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define SHERD_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define SHERD_CLONES
-#endif
 
 namespace sherd::bench {
 /// As in cvd/distance.cpp, in the same order of summation.
