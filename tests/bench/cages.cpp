@@ -22,8 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using Shared = std::shared_ptr<const TetMesh>;
-constexpr std::size_t kParts = 20;  // of the body, whose shares of the energy are compared
-constexpr double kPatches[] = {1, 2};
+constexpr std::size_t kParts = 20;     // of the body, whose shares of the energy are compared
+constexpr double kPatches[] = {1, 2};  // times the default
+constexpr std::size_t kDrops = 3;
 
 struct Model {
   const char* name;
@@ -81,75 +82,95 @@ double sumOfDifferences(const std::vector<double>& a, const std::vector<double>&
   return sum;
 }
 
-std::vector<Impact> dropsOf(const TetMesh& cage, double patch) {
+/// Needs no tetrahedra.
+std::vector<Impact> dropsOf(const std::shared_ptr<const TriMesh>& surface, double patch) {
+  TetMesh body;
+  body.surface = surface;
   std::vector<Impact> impacts;
   for (const Vec3& turn : {Vec3(25, 10, 40), Vec3(80, 0, 20), Vec3(160, 30, 10)}) {
     SimulateParams params;
     params.orientation = turn;
-    impacts.push_back(orExit(dropUntilImpact(cage, params, Exec{})));
+    impacts.push_back(orExit(dropUntilImpact(body, params, Exec{})));
     for (Contact& contact : impacts.back().contacts) contact.radius *= patch;
   }
   return impacts;
 }
 
+/// The cages of one model against a fine mesh.
 class Comparison {
  public:
-  Comparison(const Model& model, double patch, Shared fine, const std::vector<Impact>& impacts,
-             const std::vector<Vec3>& places, Table& table)
-      : model_(model), patch_(patch), impacts_(impacts), places_(places), table_(table) {
+  Comparison(const char* model, const Shared& fine, const std::shared_ptr<const TriMesh>& surface,
+             Table& table)
+      : model_(model), places_(placesOn(*surface)), table_(table) {
+    for (const double patch : kPatches) {
+      const std::vector<Impact> drops = dropsOf(surface, patch);
+      impacts_.insert(impacts_.end(), drops.begin(), drops.end());
+      Plot plot;
+      plot.title = fmt::format("{}, patch × {:g}", model, patch);
+      plot.xLabel = "error of the energies of three drops, root mean square";
+      plot.yLabel = "six drops, cpu ms";
+      plots_.push_back(std::move(plot));
+    }
     reference_ = energiesOf(fine, ElementOrder::Quadratic, impacts_, places_);
-    plot_.title = fmt::format("{}, patch × {:g}", model.name, patch);
-    plot_.xLabel = "error of the energies of three drops, root mean square";
-    plot_.yLabel = "three drops, cpu ms";
-    row("fine, ends at the surface", *fine, ElementOrder::Quadratic, reference_);
-    add("fine, ends at the surface", fine, ElementOrder::Linear);
+    rows("ends at the surface", *fine, ElementOrder::Quadratic, reference_);
+    rows("ends at the surface", *fine, ElementOrder::Linear,
+         energiesOf(fine, ElementOrder::Linear, impacts_, places_));
   }
 
-  void add(const char* kind, const Shared& mesh, ElementOrder order) {
-    row(kind, *mesh, order, energiesOf(mesh, order, impacts_, places_));
+  void add(int asked, const Shared& cage, ElementOrder order) {
+    const Drops drops = energiesOf(cage, order, impacts_, places_);
+    const std::vector<double> errors = rows("cage", *cage, order, drops);
+    for (std::size_t p = 0; p < errors.size(); ++p) {
+      point(plots_[p], nameOf(order), errors[p], drops.cpuMs);
+      if (p == 0 && order == SimulateParams{}.elements && asked == TetrahedralizeParams{}.tets)
+        point(plots_[p], "default", errors[p], drops.cpuMs);
+    }
   }
-  Plot plot() const { return plot_; }
+  const std::vector<Plot>& plots() const { return plots_; }
 
  private:
-  void row(const char* kind, const TetMesh& mesh, ElementOrder order, const Drops& drops) {
-    const char* name = order == ElementOrder::Linear ? "linear" : "quadratic";
-    std::vector<std::string> cells{model_.name, fmt::format("× {:g}", patch_), kind,
-                                   name,        count(mesh.tets.size()),       number(drops.cpuMs)};
-    double squares = 0;
-    for (std::size_t i = 0; i < drops.total.size(); ++i) {
-      const double error = drops.total[i] / reference_.total[i] - 1;
-      squares += error * error;
-      cells.push_back(fmt::format("{:.4g} J ({:+.1f} %, {:.3f})", drops.total[i], 100 * error,
-                                  sumOfDifferences(drops.shares[i], reference_.shares[i])));
-    }
-    table_.row(cells);
-    fmt::print("{}\n", fmt::join(cells, " "));
-    std::fflush(stdout);
-    if (std::string(kind) != "cage") return;
-    const double error = std::sqrt(squares / static_cast<double>(drops.total.size()));
-    point(name, error, drops.cpuMs);
-    if (order == SimulateParams{}.elements && TetrahedralizeParams{}.tets == asked_)
-      point("default", error, drops.cpuMs);
+  static const char* nameOf(ElementOrder order) {
+    return order == ElementOrder::Linear ? "linear" : "quadratic";
   }
-  void point(const std::string& series, double x, double y) {
-    auto found = std::find_if(plot_.series.begin(), plot_.series.end(),
-                              [&](const Series& s) { return s.name == series; });
-    if (found == plot_.series.end()) found = plot_.series.insert(found, Series{series, {}, {}});
+
+  /// One per patch; returns their root mean square errors.
+  std::vector<double> rows(const char* kind, const TetMesh& mesh, ElementOrder order, const Drops& drops) {
+    std::vector<double> errors;
+    for (std::size_t p = 0; p < std::size(kPatches); ++p) {
+      std::vector<std::string> cells{model_,
+                                     fmt::format("× {:g}", kPatches[p]),
+                                     kind,
+                                     nameOf(order),
+                                     count(mesh.tets.size()),
+                                     number(drops.cpuMs)};
+      double squares = 0;
+      for (std::size_t i = p * kDrops; i < (p + 1) * kDrops; ++i) {
+        const double error = drops.total[i] / reference_.total[i] - 1;
+        squares += error * error / kDrops;
+        cells.push_back(fmt::format("{:.4g} J ({:+.1f} %, {:.3f})", drops.total[i], 100 * error,
+                                    sumOfDifferences(drops.shares[i], reference_.shares[i])));
+      }
+      errors.push_back(std::sqrt(squares));
+      fmt::print("{}\n", fmt::join(cells, " "));
+      std::fflush(stdout);
+      table_.row(std::move(cells));
+    }
+    return errors;
+  }
+  static void point(Plot& plot, const std::string& name, double x, double y) {
+    auto found =
+        std::find_if(plot.series.begin(), plot.series.end(), [&](const Series& s) { return s.name == name; });
+    if (found == plot.series.end()) found = plot.series.insert(found, Series{name, {}, {}});
     found->x.push_back(x);
     found->y.push_back(y);
   }
 
- public:
-  int asked_ = 0;  ///< tetrahedra, of the cages that are added next
-
- private:
-  const Model& model_;
-  double patch_;
-  const std::vector<Impact>& impacts_;
-  const std::vector<Vec3>& places_;
+  std::string model_;
+  std::vector<Vec3> places_;
   Table& table_;
+  std::vector<Impact> impacts_;  ///< kDrops per patch
   Drops reference_;
-  Plot plot_;
+  std::vector<Plot> plots_;  ///< one per patch
 };
 
 }  // namespace
@@ -166,22 +187,14 @@ void cages(const Options& options, std::string& report) {
     LoadMeshParams loading;
     loading.file = file;
     const auto surface = std::make_shared<const TriMesh>(orExit(loadMesh(loading, Exec{})));
-    const std::vector<Vec3> places = placesOn(*surface);
     const Shared fine = orExit(conformingMesh(*surface, model.edge, model.step));
-    std::vector<std::pair<int, Shared>> all;
-    for (const int tets : {1250, 2500, 5000, 10000, 20000})
-      all.emplace_back(tets,
-                       std::make_shared<const TetMesh>(orExit(tetrahedralize(surface, {tets, 0}, Exec{}))));
-    for (const double patch : kPatches) {
-      const std::vector<Impact> impacts = dropsOf(*all[0].second, patch);
-      Comparison comparison(model, patch, fine, impacts, places, table);
-      for (const auto& [tets, mesh] : all) {
-        comparison.asked_ = tets;
-        comparison.add("cage", mesh, ElementOrder::Linear);
-        comparison.add("cage", mesh, ElementOrder::Quadratic);
-      }
-      plots.push_back(comparison.plot());
+    Comparison comparison(model.name, fine, surface, table);
+    for (const int tets : {1250, 2500, 5000, 10000, 20000}) {
+      const auto cage = std::make_shared<const TetMesh>(orExit(tetrahedralize(surface, {tets, 0}, Exec{})));
+      for (const ElementOrder order : {ElementOrder::Linear, ElementOrder::Quadratic})
+        comparison.add(tets, cage, order);
     }
+    plots.insert(plots.end(), comparison.plots().begin(), comparison.plots().end());
   }
   table.write(options.out / "cages.csv");
   writePlots(options.out / "cages.svg", plots);
