@@ -9,6 +9,7 @@
 
 #include "bench/cvd_parts.h"
 #include "bench/cvd_runs.h"
+#include "bench/marks.h"
 #include "bench/measured_table.h"
 #include "bench/plot.h"
 
@@ -56,24 +57,29 @@ Outcome bestOf(const Body& body, int count, std::uint64_t draws, std::int64_t se
 }
 
 struct Choice {
-  std::string name;
+  std::string name, curve;  ///< points of a curve are drawn as one
   Run run;
-  bool isDefault = false;
 };
 
+/// The first is the default.
 std::vector<Choice> starts(const Body& body, int count) {
   const auto drawn = [&body, count](std::int64_t seed) {
     return drawnAtOnce(body, body.weights.weight, count, static_cast<std::uint64_t>(seed));
   };
-  return {{"grown, exact", [&body, count](std::int64_t s) { return grown(body, count, s); }, true},
-          {"apart, exact", [&body, count](std::int64_t s) { return iterated(drawnApart(body, count, s)); }},
-          {"apart, flood",
+  const auto best = [&body, count](std::uint64_t draws) {
+    return [&body, count, draws](std::int64_t s) { return bestOf(body, count, draws, s); };
+  };
+  const char* uniform = "best of 1, 5, 50 uniform";
+  return {{"grown, exact", "grown, exact", [&body, count](std::int64_t s) { return grown(body, count, s); }},
+          {"apart, exact", "apart, exact",
+           [&body, count](std::int64_t s) { return iterated(drawnApart(body, count, s)); }},
+          {"apart, flood", "apart, flood",
            [&body, count](std::int64_t s) { return iterated(drawnApart(body, count, s), Labels::Flood); }},
-          {"∝ w, exact", [drawn](std::int64_t s) { return iterated(drawn(s)); }},
-          {"∝ w, flood", [drawn](std::int64_t s) { return iterated(drawn(s), Labels::Flood); }},
-          {"uniform, 1", [&body, count](std::int64_t s) { return bestOf(body, count, 1, s); }},
-          {"best of 5", [&body, count](std::int64_t s) { return bestOf(body, count, 5, s); }},
-          {"best of 50", [&body, count](std::int64_t s) { return bestOf(body, count, 50, s); }}};
+          {"∝ w, exact", "∝ w, exact", [drawn](std::int64_t s) { return iterated(drawn(s)); }},
+          {"∝ w, flood", "∝ w, flood", [drawn](std::int64_t s) { return iterated(drawn(s), Labels::Flood); }},
+          {"uniform, 1", uniform, best(1)},
+          {"best of 5", uniform, best(5)},
+          {"best of 50", uniform, best(50)}};
 }
 
 struct Bodies {
@@ -98,73 +104,65 @@ std::vector<Bodies> hitBodies(std::string& report) {
   return all;
 }
 
-void measureStarts(const std::vector<Bodies>& bodies, Table& table, Plot& plot) {
-  Series byDefault{"default: grown, exact", {}, {}};
-  std::vector<Series> series;
-  for (const Bodies& b : bodies) {
-    const std::vector<Choice> choices = starts(b.body, b.sites);
-    std::vector<Means> means;
-    double best = std::numeric_limits<double>::infinity();
-    for (const Choice& choice : choices) {
-      means.push_back(meansOf(choice.run));
-      best = std::min(best, means.back().best);
-    }
-    for (std::size_t k = 0; k < choices.size(); ++k) {
-      const double above = 100 * (means[k].energy / best - 1);
-      table.row({b.name, choices[k].name, number(means[k].ms), number(above), number(means[k].passes)});
-      if (series.size() < choices.size()) series.push_back({choices[k].name, {}, {}});
-      series[k].x.push_back(means[k].ms);
-      series[k].y.push_back(above);
-      if (!choices[k].isDefault) continue;
-      byDefault.x.push_back(means[k].ms);
-      byDefault.y.push_back(above);
-    }
+Plot startsOf(const Bodies& b, Table& table) {
+  const std::vector<Choice> choices = starts(b.body, b.sites);
+  std::vector<Means> means;
+  double best = std::numeric_limits<double>::infinity();
+  for (const Choice& choice : choices) {
+    means.push_back(meansOf(choice.run));
+    best = std::min(best, means.back().best);
   }
-  series[0] = byDefault;
-  plot.series = std::move(series);
+  Plot plot{b.name, "processor ms", "E_D above the best known, %", {}};
+  const auto above = [&](const Means& m) { return 100 * (m.energy / best - 1); };
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    table.row(
+        {b.name, choices[k].name, number(means[k].ms), number(above(means[k])), number(means[k].passes)});
+    if (plot.series.empty() || plot.series.back().name != choices[k].curve)
+      plot.series.push_back({choices[k].curve, {}, {}});
+    plot.series.back().x.push_back(means[k].ms);
+    plot.series.back().y.push_back(above(means[k]));
+  }
+  plot.series.push_back(crossAt("the default", means[0].ms, above(means[0])));
+  return plot;
 }
 
 constexpr double kTolerances[] = {0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4, 1e-5, 1e-7, 0};
 
-void measureTolerances(const std::vector<Bodies>& bodies, Table& table, Plot& plot) {
-  Series byDefault{"default: 1e-7", {}, {}};
-  for (const Bodies& b : bodies) {
-    Series series{b.name, {}, {}};
-    const auto runTo = [&](double tolerance) {
-      return meansOf([&](std::int64_t s) {
-        return iterated(drawnApart(b.body, b.sites, s), Labels::Exact, {.tolerance = tolerance});
-      });
-    };
-    const double end = runTo(0).energy;
-    for (const double tolerance : kTolerances) {
-      const Means m = runTo(tolerance);
-      const double above = 100 * (m.energy / end - 1);
-      table.row({b.name, fmt::format("{:g}", tolerance), number(m.ms), scientific(std::max(0.0, above)),
-                 number(m.passes)});
-      series.x.push_back(m.ms);
-      series.y.push_back(std::max(above, 1e-4));  // an end that is the very same is drawn at the bottom
-      if (tolerance != LloydLimits{}.tolerance) continue;
-      byDefault.x.push_back(m.ms);
-      byDefault.y.push_back(series.y.back());
-    }
-    plot.series.push_back(std::move(series));
+Plot tolerancesOf(const Bodies& b, Table& table) {
+  const auto runTo = [&](double tolerance) {
+    return meansOf([&](std::int64_t s) {
+      return iterated(drawnApart(b.body, b.sites, s), Labels::Exact, {.tolerance = tolerance});
+    });
+  };
+  constexpr double kLowest = 1e-4;  // where an end that is the very same is drawn
+  Plot plot{b.name, "processor ms", "E_D above that at the end, %", {{"tolerances", {}, {}}}};
+  const double end = runTo(0).energy;
+  for (const double tolerance : kTolerances) {
+    const Means m = runTo(tolerance);
+    const double above = std::max(0.0, 100 * (m.energy / end - 1)), drawn = std::max(above, kLowest);
+    table.row({b.name, fmt::format("{:g}", tolerance), number(m.ms), scientific(above), number(m.passes)});
+    plot.series[0].x.push_back(m.ms);
+    plot.series[0].y.push_back(drawn);
+    if (tolerance == LloydLimits{}.tolerance)
+      plot.series.push_back(crossAt("the default: 1e-7", m.ms, drawn));
   }
-  plot.series.push_back(std::move(byDefault));
+  return plot;
 }
 
 }  // namespace
 
 void choices(const Options& options, std::string& report) {
-  Plot byStart{"Labels and starts", "processor ms", "E_D above the best known, %", {}};
-  Plot byTolerance{"Tolerance", "processor ms", "E_D above that at the end, %", {}};
   Table startTable({"case", "choice", "cpu ms", "E_D above the best known, %", "passes at the end"});
   Table toleranceTable({"case", "tolerance", "cpu ms", "E_D above that at the end, %", "passes"});
-  const std::vector<Bodies> bodies = hitBodies(report);
-  measureStarts(bodies, startTable, byStart);
-  measureTolerances(bodies, toleranceTable, byTolerance);
+  std::vector<Plot> byStart, byTolerance;
+  for (const Bodies& b : hitBodies(report)) {
+    byStart.push_back(startsOf(b, startTable));
+    byTolerance.push_back(tolerancesOf(b, toleranceTable));
+  }
   startTable.write(options.out / "starts.csv");
   toleranceTable.write(options.out / "tolerances.csv");
-  writePlots(options.out / "choices.svg", {byStart, byTolerance});
+  writePlots(options.out / "starts.svg", byStart);
+  writePlots(options.out / "tolerances.svg", byTolerance);
   report +=
       "### Labels, starts and tolerance\n\nBodies hit at a corner; means over ten seeds of E_D and of "
       "processor time (the least of five runs).\n\n" +

@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/marks.h"
 #include "bench/measured_table.h"
 #include "bench/parts.h"
 #include "bench/plot.h"
@@ -144,7 +145,7 @@ void geodesics(const Options& options, std::string& report) {
     const Mesh mesh = families::shared(body.plan.mesh());
     const std::vector<Pair> pairs = exactPairs(body.plan, *mesh);
     Plot plot{.title = body.name, .xLabel = "processor ms", .yLabel = "stress", .series = {}};
-    Series byDefault{.name = kDefaultName, .x = {}, .y = {}};
+    Series byDefault;
     for (const Measured& m : measured(body.name, mesh, choicesOverModes())) {
       const double error = stress(*m.embedding, pairs);
       const bool straight = m.params.metric == P::Metric::Euclidean;
@@ -156,7 +157,7 @@ void geodesics(const Options& options, std::string& report) {
         plot.series.push_back({.name = nameOf(m.params), .x = {}, .y = {}});
       plot.series.back().x.push_back(m.processorMs());
       plot.series.back().y.push_back(error);
-      if (isDefault(m.params)) byDefault.x = {m.processorMs()}, byDefault.y = {error};
+      if (isDefault(m.params)) byDefault = crossAt(kDefaultName, m.processorMs(), error);
     }
     plot.series.push_back(std::move(byDefault));
     plots.push_back(std::move(plot));

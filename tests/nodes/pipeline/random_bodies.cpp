@@ -24,7 +24,6 @@ struct Shape {
   const char* kind;
   TriMesh mesh;
   double thickness;
-  int components = 1;
 };
 
 Shape anyBox(Rng& rng) {
@@ -106,7 +105,7 @@ Shape anyParts(Rng& rng) {
     x += 0.5 * size + gap;
     all = k == 0 ? std::move(part) : joined(std::move(all), part);
   }
-  return {"parts", std::move(all), 0.2, count};
+  return {"parts", std::move(all), 0.2};
 }
 
 Shape thinWall(Rng& rng) {
@@ -166,7 +165,6 @@ RandomBody randomBody(Rng& rng) {
   Shape shape = kShapes[rng.below(std::size(kShapes))](rng);
   RandomBody body;
   body.kind = shape.kind;
-  body.components = shape.components;
   const double scale = logUniformIn(rng, 1e-3, 1e3);
   body.thickness = scale * shape.thickness;
   body.size = scale * boxOf(shape.mesh.positions).diagonal();

@@ -15,7 +15,6 @@ struct RandomBody {
   double size = 1;       ///< m, of the bounding box's diagonal
   double distance = 0;   ///< sizes from the origin
   double thickness = 1;  ///< m, about, where it is thinnest
-  int components = 1;
 };
 
 double uniformIn(Rng& rng, double low, double high);

@@ -111,7 +111,7 @@ struct Outcome {
   double strainEnergy = 0, cellEnergy = 0;  ///< J, J·m²
   Digest digest{};                          ///< of the pieces
 
-  void find(const std::string& what) {
+  void note(const std::string& what) {
     if (defect.empty()) defect = what;
   }
 };
@@ -124,7 +124,7 @@ bool took(Outcome& out, const char* step, const Result<T>& result) {
   out.error = result.error().text();
   if (result.error().what.empty() || result.error().remedy.empty() ||
       out.error.find("nan") != std::string::npos)
-    out.find(fmt::format("{} doesn't say enough: {}", step, out.error));
+    out.note(fmt::format("{} doesn't say enough: {}", step, out.error));
   return false;
 }
 
@@ -202,13 +202,13 @@ void breakBody(const RandomHit& how, const EnergyField& energy,
   const ScalarGrid beta = ScalarGrid::constant(how.beta);
   const auto weighed = weights(energy, how.beta == 1 ? nullptr : &beta, how.weights, Exec{});
   if (!took(out, "Weights", weighed)) return;
-  if (!isAmount(weighed->weight)) out.find("a weight is negative or not finite");
+  if (!isAmount(weighed->weight)) out.note("a weight is negative or not finite");
   double kept = 0;  // nodes without volume weigh nothing
   for (std::size_t n = 0; n < weighed->volume.size(); ++n)
     if (weighed->volume[n] > 0) kept += energy.nodeEnergy[n];
-  if (!isNear(sumOf(weighed->weight), how.beta * kept, 1e-9)) out.find("weights don't add up to the energy");
+  if (!isNear(sumOf(weighed->weight), how.beta * kept, 1e-9)) out.note("weights don't add up to the energy");
   if (how.weights.alpha <= 2 && shareOfScraps(*weighed) > 0.5)
-    out.find("weights are drawn to nodes of next to no volume");
+    out.note("weights are drawn to nodes of next to no volume");
   PredictDegreeParams search;
   search.degree = 1;
   search.seed = how.seed;
@@ -219,15 +219,15 @@ void breakBody(const RandomHit& how, const EnergyField& energy,
   search.maxDegree = 12;
   const auto sites = predictDegree(*weighed, *metric, search, Exec{});
   if (!took(out, "PredictDegree", sites)) return;
-  if (sites->energy > whole->energy * (1 + 1e-12)) out.find("E_D has grown with sites");
+  if (sites->energy > whole->energy * (1 + 1e-12)) out.note("E_D has grown with sites");
   const auto cells = cvd(metric, *weighed, &*sites, {}, Exec{});
   if (!took(out, "CVD", cells)) return;
-  out.find(defectOf(*cells, *weighed));
+  out.note(defectOf(*cells, *weighed));
   out.labels = cells->label;
   out.cellEnergy = cells->energy;
   const auto pieces = tessellate(*cells, {}, Exec{});
   if (!took(out, "Tessellate", pieces)) return;
-  out.find(defectOf(*pieces));
+  out.note(defectOf(*pieces));
   out.pieceCount = pieces->pieces.size();
   Hasher hasher;
   hashValue(hasher, *pieces);
@@ -239,18 +239,18 @@ std::vector<Outcome> runChain(const RandomCase& c) {
   Outcome out;
   auto cage = tetrahedralize(c.body.surface, c.cage, Exec{});
   if (!took(out, "Tetrahedralize", cage)) return std::vector<Outcome>(c.hits.size(), out);
-  out.find(defectOf(*cage));
+  out.note(defectOf(*cage));
   const auto tets = std::make_shared<const TetMesh>(std::move(*cage));
   auto made = embed(tets, {}, Exec{});
   if (!took(out, "Embed", made)) return std::vector<Outcome>(c.hits.size(), out);
-  if (!made->coordinates.allFinite()) out.find("a coordinate is not finite");
+  if (!made->coordinates.allFinite()) out.note("a coordinate is not finite");
   const auto metric = std::make_shared<const Embedding>(std::move(*made));
   std::vector<Outcome> outcomes;
   for (const RandomHit& how : c.hits) {
     outcomes.push_back(out);
     const auto hit = simulate(tets, how.hit, Exec{});
     if (!took(outcomes.back(), "Simulate", hit)) continue;
-    outcomes.back().find(defectOf(*hit, c.body));
+    outcomes.back().note(defectOf(*hit, c.body));
     outcomes.back().strainEnergy = totalEnergy(hit->energy);
     breakBody(how, hit->energy, metric, outcomes.back());
   }
