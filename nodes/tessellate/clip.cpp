@@ -16,28 +16,23 @@ namespace {
 constexpr std::size_t kBlock = 64;  ///< triangles or polygons a task
 
 /// Vertices on one spot but for rounding: of the sheets' vertices, the crossings, and the corners of cut
-/// triangles, the only ones that can meet there, those within `kSpot` of one taken before. Found by hashing
+/// triangles, the only ones that can meet there, those within `spot` of one taken before. Found by hashing
 /// the cells of a grid so coarse that hardly any vertex is within that of another cell.
 class EqualPositions {
  public:
-  explicit EqualPositions(const Arrangement& a) : positions_(a.positions), same_(a.positions.size()) {
+  EqualPositions(const Arrangement& a, double spot)
+      : positions_(a.positions), same_(a.positions.size()), spot_(spot), inverseCell_(1 / (1024 * spot)) {
     std::iota(same_.begin(), same_.end(), Index{0});
     const std::size_t own = a.positions.size() - at(a.firstCrack);
     slots_.assign(std::bit_ceil(2 * (own + 3 * a.cutTriangles.size()) + 8), -1);
-    const Box box = boxOf(a.positions);
-    spot_ = kSpot * box.diagonal() + 0x1p-51 * box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
-    inverseCell_ = 1 / (1024 * spot_);
     for (const Index s : a.cutTriangles)
       for (const Index v : a.surface[at(s)]) addCorner(v);
     for (Index v = a.firstCrack; at(v) < a.positions.size(); ++v) add(v);
   }
 
   std::vector<Index> take() { return std::move(same_); }
-  double spot() const { return spot_; }
 
  private:
-  static constexpr double kSpot = 0x1p-48;
-
   using Cell = Eigen::Array<double, 3, 1>;
 
   Cell cellOf(const Vec3& p) const { return (p.array() * inverseCell_).floor(); }
@@ -94,18 +89,18 @@ class EqualPositions {
 
   std::span<const Vec3> positions_;
   std::vector<Index> same_, slots_;
-  double spot_ = 0, inverseCell_ = 0;
+  double spot_, inverseCell_;
 };
 
 class Clipper {
  public:
-  Clipper(const Arrangement& a, const Sheets& sheets, const Exec& exec)
-      : a_(a), sheets_(sheets), exec_(exec) {}
+  Clipper(const Arrangement& a, const Sheets& sheets, double spot, const Exec& exec)
+      : a_(a), sheets_(sheets), exec_(exec) {
+    result_.spot = spot;
+  }
 
   ClippedMeshes run() {
-    EqualPositions equal(a_);
-    result_.spot = equal.spot();
-    result_.same = equal.take();
+    result_.same = EqualPositions(a_, result_.spot).take();
     const std::size_t skin = blocksOf(a_.cutTriangles.size()), all = skin + blocksOf(sheets_.polygons.size());
     std::vector<PartedTriangles<SkinTriangle>> skinBlocks(skin);
     std::vector<PartedTriangles<SheetTriangle>> sheetBlocks(all - skin);
@@ -325,8 +320,8 @@ class Clipper {
 
 }  // namespace
 
-ClippedMeshes clip(const Arrangement& arrangement, const Sheets& sheets, const Exec& exec) {
-  return Clipper(arrangement, sheets, exec).run();
+ClippedMeshes clip(const Arrangement& arrangement, const Sheets& sheets, double spot, const Exec& exec) {
+  return Clipper(arrangement, sheets, spot, exec).run();
 }
 
 bool isFlat(const Vec3& a, const Vec3& b, const Vec3& c, double spot) {

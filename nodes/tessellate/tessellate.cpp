@@ -68,6 +68,13 @@ OwnSurface ownSurface(const TetMesh& cage) {
   return own;
 }
 
+/// How far rounding may put vertices apart that are one: some units of the coordinates, and what the cells'
+/// values bring along.
+double spotOf(const TetMesh& tets) {
+  const Box box = boxOf(tets.nodes);
+  return 0x1p-48 * box.diagonal() + 0x1p-51 * box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
+}
+
 double enclosedVolume(const TrianglePatches& patches) {
   return std::accumulate(patches.sums.begin(), patches.sums.end(), 0.0,
                          [](double sum, const SolidSums& s) { return sum + s.volume; });
@@ -109,7 +116,7 @@ Result<Fragments> tessellate(const Partition& cells, const TessellateParams& par
                                                           : cutCanonically(*tets, cells, exec));
   if (exec.cancelled()) return cancelledError();
   exec.progress(0.5);
-  ClippedMeshes meshes = clip(cut.arrangement, cut.sheets, exec);
+  ClippedMeshes meshes = clip(cut.arrangement, cut.sheets, spotOf(*tets), exec);
   if (exec.cancelled()) return cancelledError();
   exec.progress(0.8);
   const AssembleParams assembly{
