@@ -362,7 +362,8 @@ Result<DegreeModel> learnDegree(std::span<const DegreeExample* const> examples, 
   Body body{embedding, volume, validFor, params, {}};
   const ExampleList list(examples.begin(), examples.end());
   SHERD_CHECK(check(list, body));
-  if (params.method == DegreeMethod::Process) body.order = splitOrder(embedding);
+  if (params.method == DegreeMethod::Process) body.order = splitOrder(embedding, exec);
+  if (exec.cancelled()) return cancelledError();
   Decided decided;
   SHERD_ASSIGN(DegreeModel model, fitModel(list, body, decided, exec));
   if (exec.cancelled()) return cancelledError();

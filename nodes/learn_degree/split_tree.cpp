@@ -16,15 +16,14 @@ Eigen::VectorXd longestDirection(const Eigen::MatrixXd& centred) {
   Eigen::Index farthest = 0;
   centred.colwise().squaredNorm().maxCoeff(&farthest);
   Eigen::VectorXd direction = centred.col(farthest);
-  for (int k = 0; k < kPowerSteps && direction.squaredNorm() > 0; ++k) {
-    direction.normalize();
-    direction = centred * (centred.transpose() * direction);
-  }
+  const Eigen::MatrixXd spread = centred * centred.transpose();
+  for (int k = 0; k < kPowerSteps && direction.squaredNorm() > 0; ++k)
+    direction = spread * direction.normalized();
   return direction;
 }
 
-void halve(const Eigen::MatrixXd& coordinates, std::span<Index> part) {
-  if (part.size() < 2) return;
+void halve(const Eigen::MatrixXd& coordinates, std::span<Index> part, const Exec& exec) {
+  if (part.size() < 2 || exec.cancelled()) return;
   Eigen::MatrixXd centred = coordinates(Eigen::all, std::vector<Index>(part.begin(), part.end()));
   centred.colwise() -= Eigen::VectorXd(centred.rowwise().mean());
   const Eigen::VectorXd place = centred.transpose() * longestDirection(centred);
@@ -35,8 +34,8 @@ void halve(const Eigen::MatrixXd& coordinates, std::span<Index> part) {
   });
   const std::vector<Index> before(part.begin(), part.end());
   for (std::size_t k = 0; k < by.size(); ++k) part[k] = before[by[k]];
-  halve(coordinates, part.first(part.size() / 2));
-  halve(coordinates, part.subspan(part.size() / 2));
+  halve(coordinates, part.first(part.size() / 2), exec);
+  halve(coordinates, part.subspan(part.size() / 2), exec);
 }
 
 /// A range of the order.
@@ -84,10 +83,10 @@ double logCrossing(double n, double before, double after, double threshold) {
 
 }  // namespace
 
-std::vector<Index> splitOrder(const Embedding& embedding) {
+std::vector<Index> splitOrder(const Embedding& embedding, const Exec& exec) {
   std::vector<Index> order(static_cast<std::size_t>(embedding.coordinates.cols()));
   std::iota(order.begin(), order.end(), Index{0});
-  halve(embedding.coordinates, order);
+  halve(embedding.coordinates, order, exec);
   return order;
 }
 

@@ -10,13 +10,14 @@
 #include <span>
 #include <vector>
 
+#include "base/exec.h"
 #include "types/partition.h"
 
 namespace sherd {
 
-/// The tree: nodes in an order in which every part is a range, halved at its middle. O(nodes · dimensions ·
-/// log nodes).
-std::vector<Index> splitOrder(const Embedding& embedding);
+/// The tree: nodes in an order in which every part is a range, halved at its middle; any order where `exec`
+/// is cancelled. O(nodes · dimensions² · log nodes).
+std::vector<Index> splitOrder(const Embedding& embedding, const Exec& exec);
 
 struct TreeEnergy {
   double whole = 0;    ///< Σ w ‖x̄ − centre‖², J·m²

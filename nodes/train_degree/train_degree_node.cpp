@@ -253,7 +253,6 @@ NodeType trainDegreeNode() {
   node.output<std::string>("table",
                            "the examples as CSV: a line for each, with its searches and the model's word");
   node.output<double>("error", "mean absolute error on examples left out, as a share of the mean degree");
-  node.implementation(2);
   return node.run([](const Params& params, NodeIo& io) -> Result<void> {
     TrainDegreeParams wanted = params.forStep();
     for (const auto& impact : io.all<Impact>("impacts")) wanted.impacts.push_back(*impact.value);

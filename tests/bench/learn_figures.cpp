@@ -105,13 +105,16 @@ void writeFigure8(const Setup& setup, const Compared& best, const Compared& pape
     }
   }
   heights.write(directory / ("figure8_" + setup.body.name + ".csv"));
-  Table each({"height_m", "orientation_x", "orientation_y", "orientation_z", "searched", "foretold",
-              "foretold_deviation", "paper"});
+  std::vector<std::string> searches;
+  for (std::size_t k = 1; k <= best.tests.each.at(0).example->example.degree.size(); ++k)
+    searches.push_back(fmt::format("searched_{}", k));
+  Table each({"height_m", "orientation_x", "orientation_y", "orientation_z",
+              fmt::format("{}", fmt::join(searches, ",")), "foretold", "foretold_deviation", "paper"});
   for (std::size_t i = 0; i < best.tests.each.size(); ++i) {
     const Foretold& one = best.tests.each[i];
     const Vec3& turned = one.example->orientation;
     each.row({digits(one.example->height), digits(turned.x()), digits(turned.y()), digits(turned.z()),
-              fmt::format("{}", fmt::join(one.example->example.degree, " ")),
+              fmt::format("{}", fmt::join(one.example->example.degree, ",")),
               fmt::format("{}", one.estimate.degree), digits(one.estimate.deviation),
               fmt::format("{}", paper.tests.each[i].estimate.degree)});
   }

@@ -61,7 +61,7 @@ double energyOf(const Embedding& e, const std::vector<Index>& order, std::size_t
 
 TEST(SplitTree, EveryNodeOnceAndHalvesApart) {
   const auto c = reference::cloud(157, 4, 3);
-  std::vector<Index> order = splitOrder(*c.embedding);
+  std::vector<Index> order = splitOrder(*c.embedding, Exec{});
   // The first split is across the cloud's longest direction, which is its first.
   double low = 0, high = 0;
   for (std::size_t k = 0; k < 78; ++k) low += c.embedding->coordinates(0, order[k]) / 78;
@@ -73,7 +73,7 @@ TEST(SplitTree, EveryNodeOnceAndHalvesApart) {
 
 TEST(SplitTree, PiecesAreCountedAsWrittenPlainly) {
   const auto c = reference::cloud(157, 4, 3);
-  const std::vector<Index> order = splitOrder(*c.embedding);
+  const std::vector<Index> order = splitOrder(*c.embedding, Exec{});
   const VectorXd centre = VectorXd::Constant(4, 0.1);
   const std::vector<double>& w = c.weights.weight;
   using Range = std::pair<std::size_t, std::size_t>;
@@ -109,7 +109,7 @@ TEST(SplitTree, PiecesAreCountedAsWrittenPlainly) {
 
 TEST(SplitTree, EndsWhereNothingIsLeftToSplit) {
   const auto c = reference::cloud(20, 3, 4);
-  const std::vector<Index> order = splitOrder(*c.embedding);
+  const std::vector<Index> order = splitOrder(*c.embedding, Exec{});
   std::vector<double> w(20, 0.0);
   w[7] = 1, w[11] = 2;
   for (const double threshold : {1e-3, 1e-30, 1e-300}) {
@@ -120,7 +120,8 @@ TEST(SplitTree, EndsWhereNothingIsLeftToSplit) {
   // All nodes at one place.
   Embedding point = *c.embedding;
   point.coordinates.setConstant(0.3);
-  const TreeEnergy none = treeEnergy(splitOrder(point), point, VectorXd::Zero(3), w, std::array{1e-9});
+  const TreeEnergy none =
+      treeEnergy(splitOrder(point, Exec{}), point, VectorXd::Zero(3), w, std::array{1e-9});
   EXPECT_TRUE(std::isfinite(none.logPieces[0]));
 }
 
