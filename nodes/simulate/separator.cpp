@@ -41,52 +41,47 @@ void SeparatorRefinement::take(const Move& move) {
   }
 }
 
+/// Moves until none helps for long. True if the separator got smaller: `done_` then holds what changed.
+bool SeparatorRefinement::pass(std::size_t count, std::array<std::size_t, 2>& sizes, std::size_t least) {
+  std::size_t smallest = count, kept = 0, idle = 0;
+  std::array<std::size_t, 2> now = sizes;
+  while (!queue_.empty() && idle < kPatience) {
+    const Move move = queue_.top();
+    queue_.pop();
+    const auto from = static_cast<std::size_t>(other(move.to)), to = static_cast<std::size_t>(move.to);
+    if (side_[at(move.node)] != Side::Between || locked_[at(move.node)]) continue;
+    if (gain(move.node, move.to) != move.gain) continue;  // a newer offer is in the queue
+    const auto pulled = static_cast<std::size_t>(1 - move.gain);
+    if (now[from] < least + pulled) continue;
+    take(move);
+    now[from] -= pulled;
+    ++now[to];
+    count = count + pulled - 1;
+    ++idle;
+    if (count >= smallest) continue;
+    smallest = count;
+    kept = done_.size();
+    sizes = now;
+    idle = 0;
+  }
+  for (const auto& [n, side] : done_) locked_[at(n)] = 0;
+  for (std::size_t i = done_.size(); i-- > kept;) side_[at(done_[i].first)] = done_[i].second;
+  done_.resize(kept);
+  return kept > 0;
+}
+
 void SeparatorRefinement::refine(std::vector<Index>& between, std::array<std::size_t, 2>& sizes,
                                  std::size_t least) {
-  std::vector<Index> members = between;  // nodes that ever belonged to it
-  for (int pass = 0; pass < kPasses; ++pass) {
+  for (int i = 0; i < kPasses; ++i) {
     queue_ = {};
     done_.clear();
-    std::size_t count = 0;
-    for (const Index n : members)
-      if (side_[at(n)] == Side::Between) {
-        offer(n);
-        ++count;
-      }
-    const std::size_t before = count;
-    std::size_t smallest = count, kept = 0, idle = 0;
-    std::array<std::size_t, 2> now = sizes;
-    while (!queue_.empty() && idle < kPatience) {
-      const Move move = queue_.top();
-      queue_.pop();
-      const auto from = static_cast<std::size_t>(other(move.to)), to = static_cast<std::size_t>(move.to);
-      if (side_[at(move.node)] != Side::Between || locked_[at(move.node)]) continue;
-      const Index real = gain(move.node, move.to);
-      if (real != move.gain) continue;  // a newer offer is in the queue, or comes with this
-      const auto pulled = static_cast<std::size_t>(1 - real);
-      if (now[from] < least + pulled) continue;
-      take(move);
-      now[from] -= pulled;
-      ++now[to];
-      count = count + pulled - 1;
-      if (count < smallest) {
-        smallest = count;
-        kept = done_.size();
-        sizes = now;
-        idle = 0;
-      } else {
-        ++idle;
-      }
-    }
-    for (const auto& [n, side] : done_) locked_[at(n)] = 0;
-    for (std::size_t i = done_.size(); i-- > kept;) side_[at(done_[i].first)] = done_[i].second;
-    for (std::size_t i = 0; i < kept; ++i) members.push_back(done_[i].first);
-    if (smallest == before) break;
+    for (const Index n : between) offer(n);
+    if (!pass(between.size(), sizes, least)) return;
+    for (const auto& [n, side] : done_) between.push_back(n);
+    std::sort(between.begin(), between.end());
+    between.erase(std::unique(between.begin(), between.end()), between.end());
+    std::erase_if(between, [this](Index n) { return side_[at(n)] != Side::Between; });
   }
-  std::sort(members.begin(), members.end());
-  members.erase(std::unique(members.begin(), members.end()), members.end());
-  std::erase_if(members, [this](Index n) { return side_[at(n)] != Side::Between; });
-  between = std::move(members);
 }
 
 }  // namespace sherd

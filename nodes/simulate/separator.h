@@ -1,9 +1,11 @@
 // Fewer nodes between two parts of a graph, by moving them one by one.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <queue>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "types/vec.h"
@@ -46,6 +48,7 @@ class SeparatorRefinement {
   Index gain(Index n, Side to) const;
   void offer(Index n);
   void take(const Move& move);
+  bool pass(std::size_t count, std::array<std::size_t, 2>& sizes, std::size_t least);
 
   const Adjacency& graph_;
   std::vector<Side> side_;
