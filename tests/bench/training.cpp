@@ -1,15 +1,12 @@
-// Trainings: what a model that learned from drops says of thrown balls, what is computed when a training is
-// changed, and how it goes with two threads.
+// Trainings: how they go with two threads, and what is computed when one is changed.
 //
-//   bench_training [--mesh FILE] [--tets N] [--gamma G] [--radius R] [--results FILE.md]
+//   bench_training [--mesh FILE] [--tets N] [--gamma G] [--results FILE.md]
 //
-// Six heights or speeds, 64 orientations or hits with three searches each to learn from; 17 other hits with
-// six speeds to test on. Times are of the processor, so that other processes beside this one don't matter:
-// of all threads, and of the thread that calls, which takes part in all that is parallel and does alone what
-// isn't.
+// Six heights, 64 orientations with three searches each. Times are of the processor, so that other processes
+// beside this one don't matter: of all threads, and of the thread that calls, which takes part in all that is
+// parallel and does alone what isn't.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <ctime>
 #include <filesystem>
 #include <map>
@@ -116,46 +113,6 @@ Training train(const Body& body, const TrainDegreeParams& params, Memo* memo = n
   return t;
 }
 
-std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
-
-std::vector<std::string> scoreOf(const std::string& name, const Body& body, const DegreeModel& model,
-                                 const DropExamples& tests) {
-  double n = 0, sum = 0, squares = 0, absolute = 0, squared = 0, outside = 0;
-  for (const DropExample& test : tests.drops) {
-    const WeightField field{body.tets, {}, test.example.weight, tests.volume};
-    const DegreeEstimate estimate = estimateDegree(model, field, *body.embedding);
-    outside += estimate.isOutside;
-    for (const int degree : test.example.degree) {
-      n += 1, sum += degree, squares += static_cast<double>(degree) * degree;
-      absolute += std::abs(estimate.degree - degree);
-      squared += std::pow(estimate.degree - degree, 2);
-    }
-  }
-  return {name,
-          number(sum / n),
-          number(absolute / n),
-          percent(absolute / sum),
-          fmt::format("{:.4f}", 1 - squared / (squares - sum * sum / n)),
-          percent(outside / static_cast<double>(tests.drops.size()))};
-}
-
-std::string onBalls(const Body& body, const TrainDegreeParams& params) {
-  TrainDegreeParams unseen = params;
-  unseen.orientations = 0;
-  unseen.balls = 17;
-  unseen.seed = 99;
-  const DropExamples tests = examplesOf(body, unseen);
-  TrainDegreeParams balls = params, both = params;
-  balls.orientations = 0;
-  balls.balls = params.orientations;
-  both.orientations = both.balls = params.orientations / 2;
-  Table table({"trained on", "mean degree", "error on balls", "share of mean", "R²", "outside"});
-  table.row(scoreOf("drops", body, train(body, params).model, tests));
-  table.row(scoreOf("balls", body, train(body, balls).model, tests));
-  table.row(scoreOf("half of each", body, train(body, both).model, tests));
-  return table.markdown();
-}
-
 std::string onReuse(const Body& body, const TrainDegreeParams& params) {
   Kept kept;
   Table table({"training", "impacts", "solutions", "paths", "examples cpu s", "learning cpu s", "kept MB"});
@@ -210,13 +167,11 @@ void measure(const Arguments& arguments) {
   const Body body = bodyOf(arguments);
   TrainDegreeParams params;
   params.gamma = std::stod(arguments.at("gamma"));
-  params.drop.ballRadius = std::stod(arguments.at("radius"));
   const std::string name = fs::path(arguments.at("mesh")).stem().string();
-  std::string report = fmt::format("{}: {} tetrahedra, γ = {:.4g} J·m², balls of {:.3g} m\n\n", name,
-                                   body.tets->tets.size(), params.gamma, params.drop.ballRadius);
+  std::string report =
+      fmt::format("{}: {} tetrahedra, γ = {:.4g} J·m²\n\n", name, body.tets->tets.size(), params.gamma);
   report += onThreads(body, params) + '\n';
-  report += onReuse(body, params) + '\n';
-  report += onBalls(body, params);
+  report += onReuse(body, params);
   fmt::print("{}", report);
   if (!arguments.at("results").empty())
     writeSection(arguments.at("results"), "bench_training " + name, report);
@@ -229,7 +184,6 @@ int main(int argc, char** argv) {
   sherd::bench::Arguments arguments{{"mesh", SHERD_SOURCE_DIR "/../shared/meshes/horse.obj"},
                                     {"tets", "5256"},
                                     {"gamma", "1e-3"},
-                                    {"radius", "0.02"},
                                     {"results", ""}};
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string name = argv[i];
