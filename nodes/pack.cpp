@@ -17,6 +17,8 @@ NodeType writeVdbNode();
 NodeType weightsNode();
 NodeType pinSitesNode();
 NodeType trainDegreeNode();
+NodeType writeModelNode();
+NodeType readModelNode();
 NodeType predictDegreeNode();
 NodeType calibrateToughnessNode();
 NodeType cvdNode();
@@ -34,7 +36,8 @@ NodeType contactSheetNode();
 SHERD_NODE_PACK(sherd::loadMeshNode, sherd::loadPictureNode, sherd::repairNode, sherd::tetrahedralizeNode,
                 sherd::warpRestNode, sherd::embedNode, sherd::protectNode, sherd::simulateNode,
                 sherd::readVdbNode, sherd::paintBetaNode, sherd::writeVdbNode, sherd::weightsNode,
-                sherd::trainDegreeNode, sherd::pinSitesNode, sherd::predictDegreeNode,
-                sherd::calibrateToughnessNode, sherd::cvdNode, sherd::tessellateNode, sherd::selectPieceNode,
-                sherd::convexProxiesNode, sherd::exportCrackSurfaceNode, sherd::exportPiecesNode,
-                sherd::exportProxiesNode, sherd::previewNode, sherd::contactSheetNode)
+                sherd::trainDegreeNode, sherd::writeModelNode, sherd::readModelNode, sherd::pinSitesNode,
+                sherd::predictDegreeNode, sherd::calibrateToughnessNode, sherd::cvdNode,
+                sherd::tessellateNode, sherd::selectPieceNode, sherd::convexProxiesNode,
+                sherd::exportCrackSurfaceNode, sherd::exportPiecesNode, sherd::exportProxiesNode,
+                sherd::previewNode, sherd::contactSheetNode)
