@@ -1,4 +1,5 @@
-// A moderate tetrahedral mesh (the cage) that strictly encloses a closed surface and has its topology.
+// A moderate tetrahedral mesh (the cage) that strictly encloses a closed surface and has its topology, but
+// for notches and holes smaller than its edges (5).
 //
 // Schvartzman and Otaduy 2014, section 3: statics, distances and cells are computed on a tetrahedral mesh of
 // a few thousand elements; the fine surface is only cut at the end. The paper takes any mesh that surrounds
@@ -23,11 +24,11 @@
 //    outward; where that does not do, the place is meshed more finely and all is done again.
 //    Where all that gives no cage, everything is done once more with four times as many tetrahedra, unless it
 //    was gaps that made edges short: where topology stays off by much, the end comes early.
-//    Where Mesh_3 sees nothing to fill, since the body is thinner than its starting points are apart, edges are
-//    made shorter until it does.
-// 5. Where no cage has the surface's topology, one serves that has other handles or further voids, but encloses
-//    the surface, has its components, and keeps open all gaps with a way round of more than an edge: it bridges
-//    notches and holes that are smaller than its edges, wholly or in part. A warning says so.
+//    Where Mesh_3 sees nothing to fill, since the body is thinner than its starting points are apart, edges
+//    are made shorter until it does.
+// 5. Where no cage has the surface's topology, one serves that has other handles or further voids, but
+//    encloses the surface, has its components, and keeps open all gaps with a way round of more than an edge:
+//    it bridges notches and holes that are smaller than its edges, wholly or in part. A warning says so.
 //
 // Parts of the surface may touch in a point or along an edge, each with vertices of its own there (as
 // SelectPiece makes them): the cage joins them, so there its topology may be that of the joined parts.

@@ -4,10 +4,11 @@
 namespace sherd {
 
 NodeType tetrahedralizeNode() {
-  return NodeBuilder<TetrahedralizeParams>("Tetrahedralize", 1,
-                                           "Fills the surface with a moderate tetrahedral mesh that strictly "
-                                           "encloses it and has its topology; "
-                                           "statics, distances and cells are computed on it.")
+  return NodeBuilder<TetrahedralizeParams>(
+             "Tetrahedralize", 1,
+             "Fills the surface with a moderate tetrahedral mesh that strictly "
+             "encloses it and has its topology, but for holes smaller than its edges; "
+             "statics, distances and cells are computed on it.")
       .input<TriMesh>("mesh", "closed, manifold surface")
       .integer("tets", &TetrahedralizeParams::tets,
                {.min = 20,

@@ -232,12 +232,11 @@ void addDrop(Builder& node) {
 }  // namespace
 
 NodeType trainDegreeNode() {
-  Builder node("TrainDegree", 1,
-               "Drops the body in many ways, or throws balls at it, searches into how many pieces it breaks "
-               "each time, "
-               "and learns to foretell that. What was computed is kept: more examples cost what is new, and "
-               "a training "
-               "that was ended goes on.");
+  Builder node(
+      "TrainDegree", 1,
+      "Drops the body in many ways, or throws balls at it, searches into how many pieces it breaks "
+      "each time, and learns to foretell that. What was computed is kept: more examples cost what is "
+      "new, and a training that was ended goes on.");
   node.implementation(3);
   node.input<TetMesh>("body", "the body that is dropped or hit");
   node.input<Embedding>("embedding", "the distances to measure with, from Embed");
