@@ -154,6 +154,49 @@ Rational normalCoordinate(const ExactPoints& points, const Triangle& t, std::siz
   return difference(t[1], i) * difference(t[2], j) - difference(t[1], j) * difference(t[2], i);
 }
 
+/// Where pq comes nearest to the triangle, which lies on a line or at a point: the share of the way from p.
+double shareNearestToLine(const ExactPoints& points, Index p, Index q, const Triangle& t) {
+  std::array<std::size_t, 2> ends{0, 1};  // the longest side
+  for (std::size_t i = 1; i < 3; ++i)
+    if ((points[t[i]] - points[t[(i + 1) % 3]]).squaredNorm() >
+        (points[t[ends[0]]] - points[t[ends[1]]]).squaredNorm())
+      ends = {i, (i + 1) % 3};
+  const Vec3 origin = points[t[ends[0]]], side = points[t[ends[1]]] - origin;
+  const Vec3 way = points[q] - points[p], from = points[p] - origin;
+  const Vec3 normal = way.cross(side);
+  const double n2 = normal.squaredNorm(), length2 = way.squaredNorm();
+  if (!(length2 > 0)) return 0.5;
+  if (n2 > 0x1p-80 * length2 * side.squaredNorm())
+    return std::clamp(side.cross(from).dot(normal) / n2, 0.0, 1.0);
+  // Along each other: the middle of what they share.
+  const double s = -from.dot(way) / length2, e = (side - from).dot(way) / length2;
+  return 0.5 * (std::clamp(std::min(s, e), 0.0, 1.0) + std::clamp(std::max(s, e), 0.0, 1.0));
+}
+
+/// The shares of the ways from p and from q at which pq crosses the triangle's plane, off by no more than
+/// some 2⁻⁴² of the sizes at hand. Rounded depths don't tell where the segment is all but in the plane: what
+/// they give there can lie anywhere on it, far from the triangle.
+std::array<double, 2> shares(const ExactPoints& points, Index p, Index q, const Triangle& t) {
+  const auto extent = [&](Index to) { return (points[to] - points[t[0]]).cwiseAbs().maxCoeff(); };
+  // A depth is six products of three differences, and off by some 2⁻⁴⁸ of this.
+  const double size = extent(t[1]) * extent(t[2]) * std::max(extent(p), extent(q));
+  const auto divided = [](auto ofP, auto ofQ) {
+    const auto sum = ofP + ofQ;
+    return std::array{static_cast<double>(ofP / sum), static_cast<double>(ofQ / sum)};
+  };
+  const auto rough = depths<double>(points, p, q, t);
+  if (std::abs(rough.p) + std::abs(rough.q) > 0x1p-6 * size)
+    return divided(std::abs(rough.p), std::abs(rough.q));
+  const auto fine = depths<long double>(points, p, q, t);
+  if (std::abs(fine.p) + std::abs(fine.q) > 0x1p-17L * static_cast<long double>(size))
+    return divided(std::abs(fine.p), std::abs(fine.q));
+  const auto exact = depths<Rational>(points, p, q, t);
+  const Rational ofP = abs(exact.p), ofQ = abs(exact.q), sum = ofP + ofQ;
+  if (sum > 0) return {CGAL::to_double(Rational(ofP / sum)), CGAL::to_double(Rational(ofQ / sum))};
+  const double share = shareNearestToLine(points, p, q, t);
+  return {share, 1 - share};
+}
+
 }  // namespace
 
 int ExactPoints::orientation(Index a, Index b, Index c, Index d) const {
@@ -207,11 +250,9 @@ int ExactPoints::compareCrossings(Index p, Index q, const Triangle& s, const Tri
 Vec3 ExactPoints::crossing(Index p, Index q, const Triangle& t) const {
   if (p > q) std::swap(p, q);
   const Vec3 &a = (*this)[p], &b = (*this)[q];
-  const auto d = depths<double>(*this, p, q, t);
-  const double u = std::abs(d.p), v = std::abs(d.q), sum = u + v;
-  const double share = sum > 0 ? std::clamp(u / sum, 0.0, 1.0) : 0.5;
+  const auto [u, v] = shares(*this, p, q, t);
   // From the nearer end, so that a crossing close to an end is placed with that end's precision.
-  Vec3 point = share <= 0.5 ? Vec3(a + share * (b - a)) : Vec3(b + (sum > 0 ? v / sum : 0.5) * (a - b));
+  Vec3 point = u <= v ? Vec3(a + u * (b - a)) : Vec3(b + v * (a - b));
   point = point.cwiseMax(a.cwiseMin(b)).cwiseMin(a.cwiseMax(b));
   const Vec3 &x = (*this)[t[0]], &y = (*this)[t[1]], &z = (*this)[t[2]];
   for (Eigen::Index k = 0; k < 3; ++k)

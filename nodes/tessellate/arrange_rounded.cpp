@@ -175,21 +175,28 @@ class Arranger {
     return {};
   }
 
-  /// The cell of a surface vertex, in the tetrahedron that holds it: the first sheet met on the way to one of
-  /// its nodes, or that node's own cell.
+  /// The cell of a surface vertex: the first sheet met on the way to a node of the tetrahedron that holds it,
+  /// or that node's own cell.
   Index locate(Index vertex) {
     const Index tet = tets_.vertexTet[at(vertex)];
     if (tet < 0) return -1;
-    // The tetrahedra's nodes are numbered behind the sheets' vertices.
-    std::vector<Vec3> all(a_.positions.begin(), a_.positions.begin() + a_.firstNew);
-    all.insert(all.end(), tets_.nodes.begin(), tets_.nodes.end());
-    return cellTowards(ExactPoints(all, a_.firstCrack), vertex, tets_.tets[at(tet)][0] + a_.firstNew, tet);
+    if (withNodes_.empty()) {
+      withNodes_.assign(a_.positions.begin(), a_.positions.begin() + a_.firstNew);
+      withNodes_.insert(withNodes_.end(), tets_.nodes.begin(), tets_.nodes.end());
+    }
+    return cellTowards(ExactPoints(withNodes_, a_.firstCrack), vertex, tets_.tets[at(tet)][0] + a_.firstNew);
   }
 
-  Index cellTowards(const ExactPoints& points, Index vertex, Index node, Index tet) const {
+  /// Of all sheets: a vertex on a face may pass, when moved, into the next tetrahedron.
+  Index cellTowards(const ExactPoints& points, Index vertex, Index node) const {
+    Box way;
+    way.add(points[vertex]);
+    way.add(points[node]);
     Index nearest = -1;
     for (std::size_t c = 0; c < crack_.size(); ++c) {
-      if (sheets_.polygons[c].tet != tet || !points.crosses(vertex, node, crack_[c])) continue;
+      Box box;
+      for (const Index v : crack_[c]) box.add(points[v]);
+      if (!way.overlaps(box) || !points.crosses(vertex, node, crack_[c])) continue;
       if (nearest < 0 || points.compareCrossings(vertex, node, crack_[c], crack_[at(nearest)]) < 0)
         nearest = static_cast<Index>(c);
     }
@@ -269,6 +276,7 @@ class Arranger {
   std::vector<Triangle> crack_;  ///< the sheets' triangles, numbered as in the arrangement
   EdgeTable surfaceEdges_;
   EdgeCrossings surfaceCrossings_;  ///< by surfaceEdges_
+  std::vector<Vec3> withNodes_;     ///< the tetrahedra's nodes behind the sheets' vertices; made when needed
   Arrangement a_;
 };
 

@@ -50,7 +50,7 @@ NodeType tessellateNode() {
       .number("min_volume_absolute", &TessellateParams::minVolumeAbsolute,
               {.unit = "m³", .min = 0, .help = "the same as a volume; the larger of the two counts"})
       .output<Fragments>("pieces", "closed pieces, each with its outer skin and its crack faces")
-      .implementation(4)
+      .implementation(5)
       .run([](const TessellateParams& params, NodeIo& io) -> Result<void> {
         const auto cells = io.in<Partition>("cells");
         if (const auto mesh = io.in<TriMesh>("mesh")) {

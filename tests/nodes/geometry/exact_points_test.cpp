@@ -142,5 +142,41 @@ TEST(ExactPoints, CrossingPointKeepsSharedCoordinatesAndDoesNotDependOnDirection
   }
 }
 
+/// Rounded heights over the plane are noise for a segment that lies in it: the crossing's place isn't.
+TEST(ExactPoints, CrossingOfASegmentAllButInThePlaneLiesInTheTriangle) {
+  Rng rng(11);
+  int found = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const auto vec = [&] { return Vec3(rng.uniform(), rng.uniform(), rng.uniform()); };
+    const Vec3 a = vec(), b = vec(), c = vec();
+    const auto inPlane = [&](double u, double v) { return Vec3(a + u * (b - a) + v * (c - a)); };
+    const std::vector<Vec3> p{inPlane(-9 * rng.uniform(), 9 * rng.uniform()),
+                              inPlane(9 * rng.uniform(), -9 * rng.uniform()), a, b, c};
+    const ExactPoints points(p);
+    if (!points.crosses(0, 1, {2, 3, 4})) continue;
+    ++found;
+    const Vec3 at = points.crossing(0, 1, {2, 3, 4});
+    const Vec3 normal = (b - a).cross(c - a);
+    const double area2 = normal.squaredNorm(), size = (p[1] - p[0]).norm();
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+      EXPECT_GT((to - from).cross(at - from).dot(normal),
+                -1e-12 * size * (to - from).norm() * std::sqrt(area2))
+          << i;
+  }
+  EXPECT_GT(found, 100);
+}
+
+TEST(ExactPoints, CrossingOfATriangleOnALineLiesOnIt) {
+  // Along the x axis, degenerate; segments through it, touching its end, and along it.
+  const std::vector<Vec3> p{Vec3(1, 0, 0),   Vec3(3, 0, 0), Vec3(2, 0, 0),  Vec3(1.5, -1, 0),
+                            Vec3(1.5, 3, 0), Vec3(0, 0, 0), Vec3(2.5, 0, 0)};
+  const ExactPoints points(p);
+  EXPECT_EQ(points.crossing(3, 4, {0, 1, 2}), Vec3(1.5, 0, 0));
+  EXPECT_EQ(points.crossing(4, 3, {2, 0, 1}), Vec3(1.5, 0, 0));
+  const Vec3 along = points.crossing(5, 6, {0, 1, 2});
+  EXPECT_GE(along.x(), 1);
+  EXPECT_LE(along.x(), 2.5);
+}
+
 }  // namespace
 }  // namespace sherd

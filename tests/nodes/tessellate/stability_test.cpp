@@ -165,6 +165,11 @@ TEST(Stability, ExactCells) { run("exact", adversarialCase, kExact, 1, 110, fals
 TEST(Stability, SeedsOfFormerFaults) {
   for (const std::uint64_t seed : {27, 465, 3147}) run("exact", adversarialCase, kExact, seed, seed, false);
 }
+/// Sheets all but in the plane of the surface; a void with a sheet through its vertex.
+TEST(Stability, CanonicalSeedsOfFormerFaults) {
+  for (const std::uint64_t seed : {509, 4134, 4379, 5911, 6962, 8862})
+    run("canonical", adversarialCase, kCanonical, seed, seed, false);
+}
 TEST(Stability, CanonicalCells) { run("canonical", adversarialCase, kCanonical, 1, 60, false); }
 TEST(Stability, ConformingSurfaces) { run("conforming", conformingCase, kConforming, 1, 50, false); }
 TEST(SlowStability, ExactCells) { run("exact", adversarialCase, kExact, 1, 1500, true); }
