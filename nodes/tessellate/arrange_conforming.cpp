@@ -3,6 +3,7 @@
 
 #include "tessellate/arrangement.h"
 #include "tessellate/crossing_order.h"
+#include "tessellate/equal_positions.h"
 
 namespace sherd {
 namespace {
@@ -10,9 +11,10 @@ namespace {
 class Arranger {
  public:
   Arranger(const TetMesh& tets, std::span<const Index> nodeOf, std::span<const Index> nodeCell,
-           const Sheets& sheets)
+           const Sheets& sheets, double spot)
       : sheets_(sheets), vertexOf_(tets.nodes.size(), -1) {
     const TriMesh& surface = *tets.surface;
+    a_.spot = spot;
     a_.surface = surface.triangles;
     a_.firstCrack = static_cast<Index>(surface.positions.size());
     a_.positions = surface.positions;
@@ -35,6 +37,7 @@ class Arranger {
     a_.sheetInside.assign(sheets_.vertices.size(), 1);
     groupBySurface(a_);
     groupByPolygon(sheets_.polygons.size(), a_);
+    a_.same = equalPositions(a_);
     return std::move(a_);
   }
 
@@ -159,8 +162,8 @@ class Arranger {
 }  // namespace
 
 Result<Arrangement> arrangeConforming(const TetMesh& tets, std::span<const Index> nodeOf,
-                                      std::span<const Index> nodeCell, const Sheets& sheets) {
-  return Arranger(tets, nodeOf, nodeCell, sheets).run();
+                                      std::span<const Index> nodeCell, const Sheets& sheets, double spot) {
+  return Arranger(tets, nodeOf, nodeCell, sheets, spot).run();
 }
 
 }  // namespace sherd

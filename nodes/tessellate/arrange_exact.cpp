@@ -6,23 +6,26 @@
 #include "tessellate/arrangement.h"
 #include "tessellate/bucket_sort.h"
 #include "tessellate/crossing_order.h"
+#include "tessellate/equal_positions.h"
 #include "tessellate/tet_search.h"
 
 namespace sherd {
 namespace {
 
-constexpr std::size_t kBlock = 16;  ///< cut tetrahedra a task
+constexpr std::size_t kBlock = 32;  ///< cut tetrahedra a task
 
 class Arranger {
  public:
-  Arranger(const TetMesh& tets, const ExactSheets& exact, const SiteValues& values, const Exec& exec)
+  Arranger(const TetMesh& tets, ExactSheets& exact, const SiteValues& values, double spot, const Exec& exec)
       : tets_(tets),
         exact_(exact),
         sheets_(exact.sheets),
         values_(values),
         exec_(exec),
         positions_(tets.surface->positions),
-        triangles_(tets.surface->triangles) {}
+        triangles_(tets.surface->triangles) {
+    a_.spot = spot;
+  }
 
   Result<Arrangement> run() {
     groupByTet();
@@ -31,19 +34,14 @@ class Arranger {
     number();
     nameSurfaceEdges();
     if (exec_.cancelled()) return cancelledError();
-    if (!orderAlongEdges(
-            a_.surfaceCrossings,
-            [&](const Crossing& x, const Crossing& y) { return isBeforeOnSurface(x, y); },
-            [&](const Crossing& x) { return cellsAcross(sheets_, x); }))
-      return inconsistentCut("cells do not follow each other along an edge of the surface");
-    if (!orderAlongEdges(
-            a_.sheetCrossings, [&](const Crossing& x, const Crossing& y) { return isBeforeOnSheet(x, y); },
-            sidesAcross))
-      return inconsistentCut("inside and outside do not alternate along an edge of a sheet");
+    TaskGroup tasks;
+    tasks.run([this] { a_.same = equalPositions(a_); });
+    SHERD_CHECK(orderCrossings());
     SHERD_CHECK(checkLabels());
     SHERD_CHECK(classifySheets(tets_, sheets_, a_));
     groupBySurface(a_);
     groupByPolygon(sheets_.polygons.size(), a_);
+    tasks.wait();
     return std::move(a_);
   }
 
@@ -55,9 +53,6 @@ class Arranger {
     cutTets_ = tetBegin_.size();
     tetBegin_.push_back(static_cast<Index>(sheets_.polygons.size()));
     cutTet_.assign(tets_.tets.size(), -1);
-    cornerOfEdge_.resize(sheets_.edges.size());
-    for (std::size_t c = 0; c < sheets_.edgeOf.size(); ++c)
-      cornerOfEdge_[at(sheets_.edgeOf[c])] = static_cast<Index>(c);
     for (std::size_t i = 0; i < cutTets_; ++i)
       cutTet_[at(sheets_.polygons[at(tetBegin_[i])].tet)] = static_cast<Index>(i);
   }
@@ -65,11 +60,14 @@ class Arranger {
   void findSegments() {
     a_.surfaceLabel.assign(positions_.size(), -1);
     found_.resize((cutTets_ + kBlock - 1) / kBlock);
+    TaskGroup tasks;
+    tasks.run([this] { exact_.sheets.connect(); });  // one thread's work, and not needed to find segments
     parallelFor(exec_, cutTets_, kBlock, [&](std::size_t begin, std::size_t end) {
       TetSearch search(tets_, exact_, values_, a_.surfaceLabel);
       for (std::size_t i = begin; i < end; ++i)
         search.search(tetBegin_[i], tetBegin_[i + 1], found_[begin / kBlock]);
     });
+    tasks.wait();
   }
 
   /// From the heaviest corner, so that a point close to a corner keeps that corner's digits; within the
@@ -96,6 +94,7 @@ class Arranger {
            {std::pair(&block.surfaceEnds, &surfaceEnds), std::pair(&block.sheetEnds, &sheetEnds)})
         for (FoundEnd& end : *from) {
           end.segment += first;
+          if (end.b < 0) end.a = sheets_.edgeOf[at(end.a)];
           to->push_back(end);
         }
       segments.insert(segments.end(), block.segments.begin(), block.segments.end());
@@ -183,6 +182,19 @@ class Arranger {
     return corners;
   }
 
+  Result<void> orderCrossings() {
+    if (!orderAlongEdges(
+            a_.surfaceCrossings,
+            [&](const Crossing& x, const Crossing& y) { return isBeforeOnSurface(x, y); },
+            [&](const Crossing& x) { return cellsAcross(sheets_, x); }))
+      return inconsistentCut("cells do not follow each other along an edge of the surface");
+    if (!orderAlongEdges(
+            a_.sheetCrossings, [&](const Crossing& x, const Crossing& y) { return isBeforeOnSheet(x, y); },
+            sidesAcross))
+      return inconsistentCut("inside and outside do not alternate along an edge of a sheet");
+    return {};
+  }
+
   bool isBeforeOnSurface(const Crossing& x, const Crossing& y) const {
     const auto [p, q] = a_.cutEdges[at(x.edge)];
     const Vec3 &from = positions_[at(p)], &to = positions_[at(q)];
@@ -239,7 +251,7 @@ class Arranger {
 
   /// A polygon with this edge, and the edge's place in it.
   std::array<Index, 2> polygonAt(Index edge) const {
-    const Index corner = cornerOfEdge_[at(edge)];
+    const Index corner = sheets_.cornersAlong(edge)[0];
     const auto after = std::upper_bound(sheets_.polygons.begin(), sheets_.polygons.end(), corner,
                                         [](Index c, const SheetPolygon& p) { return c < p.first; });
     const Index polygon = static_cast<Index>(after - sheets_.polygons.begin()) - 1;
@@ -266,15 +278,14 @@ class Arranger {
   }
 
   const TetMesh& tets_;
-  const ExactSheets& exact_;
+  ExactSheets& exact_;
   const Sheets& sheets_;
   const SiteValues& values_;
   const Exec& exec_;
   std::span<const Vec3> positions_;
   std::span<const Triangle> triangles_;
-  std::vector<Index> tetBegin_;      ///< per cut tetrahedron its first polygon; one more at the end
-  std::vector<Index> cutTet_;        ///< per tetrahedron its number among the cut ones, or −1
-  std::vector<Index> cornerOfEdge_;  ///< per sheet edge a polygon's corner where it begins
+  std::vector<Index> tetBegin_;  ///< per cut tetrahedron its first polygon; one more at the end
+  std::vector<Index> cutTet_;    ///< per tetrahedron its number among the cut ones, or −1
   std::size_t cutTets_ = 0;
   struct Place {
     Index surface, polygon;
@@ -288,9 +299,9 @@ class Arranger {
 
 }  // namespace
 
-Result<Arrangement> arrangeExact(const TetMesh& tets, const ExactSheets& exact, const SiteValues& values,
-                                 const Exec& exec) {
-  return Arranger(tets, exact, values, exec).run();
+Result<Arrangement> arrangeExact(const TetMesh& tets, ExactSheets& exact, const SiteValues& values,
+                                 double spot, const Exec& exec) {
+  return Arranger(tets, exact, values, spot, exec).run();
 }
 
 }  // namespace sherd

@@ -5,6 +5,7 @@
 #include "geometry/exact_points.h"
 #include "tessellate/arrangement.h"
 #include "tessellate/crossing_order.h"
+#include "tessellate/equal_positions.h"
 
 namespace sherd {
 namespace {
@@ -14,8 +15,11 @@ constexpr std::size_t kBlock = 64;  ///< sheet triangles a task
 /// Finds which edges cross which triangles, then works out all that follows.
 class Arranger {
  public:
-  Arranger(const TetMesh& tets, std::span<const Index> nodeLabel, const Sheets& sheets, const Exec& exec)
-      : tets_(tets), nodeLabel_(nodeLabel), sheets_(sheets), exec_(exec) {}
+  Arranger(const TetMesh& tets, std::span<const Index> nodeLabel, const Sheets& sheets, double spot,
+           const Exec& exec)
+      : tets_(tets), nodeLabel_(nodeLabel), sheets_(sheets), exec_(exec) {
+    a_.spot = spot;
+  }
 
   Result<Arrangement> run() {
     number();
@@ -35,6 +39,7 @@ class Arranger {
     nameCutTriangles();
     groupBySurface(a_);
     groupByPolygon(sheets_.polygons.size(), a_);
+    a_.same = equalPositions(a_);
     return std::move(a_);
   }
 
@@ -283,8 +288,8 @@ class Arranger {
 }  // namespace
 
 Result<Arrangement> arrangeRounded(const TetMesh& tets, std::span<const Index> nodeLabel,
-                                   const Sheets& sheets, const Exec& exec) {
-  return Arranger(tets, nodeLabel, sheets, exec).run();
+                                   const Sheets& sheets, double spot, const Exec& exec) {
+  return Arranger(tets, nodeLabel, sheets, spot, exec).run();
 }
 
 }  // namespace sherd

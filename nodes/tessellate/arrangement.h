@@ -45,6 +45,8 @@ struct Arrangement {
   std::span<const Triangle> surface;
   std::vector<Vec3> positions;
   Index firstCrack = 0, firstNew = 0;
+  double spot = 0;          ///< m: how far rounding may put vertices apart that are one
+  std::vector<Index> same;  ///< per vertex: the one that stands for all on its spot (equal_positions.h)
   std::vector<Index> surfaceLabel;  ///< per surface vertex: the cell that it lies in
 
   std::vector<Index> cutTriangles;  ///< surface triangles that a sheet crosses, ascending
@@ -60,22 +62,24 @@ struct Arrangement {
   std::vector<unsigned char> sheetInside;        ///< per sheet vertex: lies inside of the surface
 };
 
-/// The surface against exact sheets, with the predicates of symbolic_sign.h. `tets.surface` is closed,
-/// coherently oriented and free of self-intersections. Error where what was found does not fit together,
-/// which a surface that is not so can cause. Cost O(surface vertices) for their cells, plus O(triangles held
-/// by tetrahedra with a sheet).
-Result<Arrangement> arrangeExact(const TetMesh& tets, const ExactSheets& exact, const SiteValues& values,
-                                 const Exec& exec);
+// `spot` (m, > 0) becomes Arrangement::spot.
+
+/// The surface against exact sheets, which are connected on the way, with the predicates of symbolic_sign.h.
+/// `tets.surface` is closed, coherently oriented and free of self-intersections. Error where what was found
+/// does not fit together, which a surface that is not so can cause. Cost O(surface vertices) for their cells,
+/// plus O(triangles held by tetrahedra with a sheet).
+Result<Arrangement> arrangeExact(const TetMesh& tets, ExactSheets& exact, const SiteValues& values,
+                                 double spot, const Exec& exec);
 
 /// The surface against sheets with rounded vertices, under Simulation of Simplicity of all (exact_points.h).
 /// `nodeLabel`: the cell of each node.
 Result<Arrangement> arrangeRounded(const TetMesh& tets, std::span<const Index> nodeLabel,
-                                   const Sheets& sheets, const Exec& exec);
+                                   const Sheets& sheets, double spot, const Exec& exec);
 
 /// The cage's boundary as the surface: the sheets end on it, and nothing is clipped. `tets.surface` is that
 /// boundary with its triangles in the order of TetMesh::boundary; `nodeOf`: per surface vertex its node;
 /// `nodeCell`: per node its cell. Cost O(boundary + sheets).
 Result<Arrangement> arrangeConforming(const TetMesh& tets, std::span<const Index> nodeOf,
-                                      std::span<const Index> nodeCell, const Sheets& sheets);
+                                      std::span<const Index> nodeCell, const Sheets& sheets, double spot);
 
 }  // namespace sherd

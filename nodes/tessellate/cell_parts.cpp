@@ -5,12 +5,12 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "tessellate/first_numbers.h"
 
 namespace sherd {
-
-CellParts::CellParts(const TetMesh& tets, const Arrangement& arrangement, const ClippedMeshes& meshes,
-                     std::span<const unsigned char> isCut, const Exec& exec)
-    : tets_(tets), arrangement_(arrangement), meshes_(meshes), exec_(exec) {
+CellParts::CellParts(const TetMesh& tets, const Sheets& sheets, const Arrangement& arrangement,
+                     const ClippedMeshes& meshes, std::span<const unsigned char> isCut, const Exec& exec)
+    : tets_(tets), sheets_(sheets), arrangement_(arrangement), meshes_(meshes), exec_(exec) {
   splitPatches(isCut);
   if (exec.cancelled()) return;
   firstSkin_ = uncut_.size();
@@ -105,7 +105,8 @@ void CellParts::nameCells() {
   }
 }
 
-/// Uncut triangles that are neighbours lie in one cell; those beside a cut one meet its parts over the edge.
+/// Uncut triangles that are neighbours lie in one cell; those beside a cut one meet its parts over the
+/// edge.
 void CellParts::joinUncut(std::span<const unsigned char> isCut, std::vector<Side>& sides) {
   constexpr std::size_t block = 64;
   const std::size_t n = whole_.size();
@@ -155,50 +156,51 @@ void CellParts::addSkinBorders(std::vector<Side>& sides) const {
                        static_cast<Index>(firstSkin_ + k)});
 }
 
-/// Around a whole edge mostly two or three cells meet, each in two parts: the first is kept until the second
-/// comes. Other edges, and cells beyond the third, are left to joinSides.
+/// Along whole edges by what runs along them; other edges are left to joinSides.
 void CellParts::joinSheets(std::vector<Side>& sides) {
-  struct Waiting {
-    Index cell = -1, part = -1;
-  };
-  Index edges = 0;
-  for (const BorderEdge& e : meshes_.sheet.border) edges = std::max(edges, e.whole + 1);
-  std::vector<std::array<Waiting, 3>> around(at(edges));
-  const auto meet = [&](const BorderEdge& e, std::size_t part) {
-    if (e.whole >= 0)
-      for (Waiting& w : around[at(e.whole)]) {
-        if (w.cell < 0) w = {cell_[part], static_cast<Index>(part)};
-        if (w.cell != cell_[part]) continue;
-        connected_.join(at(w.part), part);
-        return;
-      }
-    sides.push_back({std::min(e.from, e.to), std::max(e.from, e.to), cell_[part], static_cast<Index>(part)});
-  };
+  std::vector<Index> numberAt(sheets_.corners.size(), -1);  // of the part whose border begins there
   for (std::size_t k = 0; k < meshes_.sheet.parts(); ++k)
     for (const BorderEdge& e : meshes_.sheet.borderOf(k)) {
-      meet(e, firstSheet_ + 2 * k);
-      meet(e, firstSheet_ + 2 * k + 1);
+      if (e.corner >= 0) {
+        numberAt[at(e.corner)] = static_cast<Index>(k);
+        continue;
+      }
+      for (const std::size_t part : {firstSheet_ + 2 * k, firstSheet_ + 2 * k + 1})
+        sides.push_back(
+            {std::min(e.from, e.to), std::max(e.from, e.to), cell_[part], static_cast<Index>(part)});
     }
+  std::vector<Index> around;
+  for (std::size_t e = 0; e < sheets_.edges.size(); ++e) {
+    around.clear();
+    for (const Index corner : sheets_.cornersAlong(static_cast<Index>(e)))
+      if (const Index k = numberAt[at(corner)]; k >= 0)
+        around.push_back(static_cast<Index>(firstSheet_) + 2 * k);
+    joinAround(around);
+  }
+}
+
+/// Each cell around an edge of the sheets is bounded by two parts there.
+void CellParts::joinAround(std::span<const Index> sheetParts) {
+  for (std::size_t i = 0; i < sheetParts.size(); ++i)
+    for (const Index part : {sheetParts[i], sheetParts[i] + 1})
+      for (std::size_t k = i + 1; k < sheetParts.size(); ++k)
+        for (const Index other : {sheetParts[k], sheetParts[k] + 1})
+          if (cell_[at(part)] == cell_[at(other)]) connected_.join(at(part), at(other));
 }
 
 /// Joins the parts with a side in common, found by hashing the edges.
 void CellParts::joinSides(std::span<const Side> sides) {
-  const std::size_t buckets = std::bit_ceil(sides.size() / 2 + 1);
-  const auto bucketOf = [&](const Side& s) {
-    const std::uint64_t edge = static_cast<std::uint64_t>(s.low) << 32 | static_cast<std::uint32_t>(s.high);
-    return (edge * 0x9E3779B97F4A7C15ULL >> 32) & (buckets - 1);
-  };
-  std::vector<Index> begin(buckets + 1, 0);
-  for (const Side& s : sides) ++begin[bucketOf(s) + 1];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<Side> sorted(sides.size());
-  std::vector<Index> fill(begin.begin(), begin.end() - 1);
-  for (const Side& s : sides) sorted[at(fill[bucketOf(s)]++)] = s;
-  for (std::size_t b = 0; b < buckets; ++b)
-    for (Index i = begin[b]; i < begin[b + 1]; ++i)
-      for (Index k = i + 1; k < begin[b + 1]; ++k)
-        if (sorted[at(i)].meets(sorted[at(k)]))
-          connected_.join(at(sorted[at(i)].part), at(sorted[at(k)].part));
+  std::vector<Index> slots(std::bit_ceil(2 * sides.size() + 8), -1);
+  const std::size_t mask = slots.size() - 1;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const Side& side = sides[i];
+    std::size_t slot = hashOfIndices(std::array{side.low, side.high, side.cell}) & mask;
+    while (slots[slot] >= 0 && !sides[at(slots[slot])].meets(side)) slot = (slot + 1) & mask;
+    if (slots[slot] < 0)
+      slots[slot] = static_cast<Index>(i);
+    else
+      connected_.join(at(sides[at(slots[slot])].part), at(side.part));
+  }
 }
 
 void CellParts::sumUp(std::span<const unsigned char> isCut) {

@@ -21,8 +21,8 @@ class CellParts {
  public:
   /// `isCut`: per surface triangle. When exec is cancelled it ends soon with something unfinished. Cost
   /// O(patches + triangles of patches with a cut one + new triangles).
-  CellParts(const TetMesh& tets, const Arrangement& arrangement, const ClippedMeshes& meshes,
-            std::span<const unsigned char> isCut, const Exec& exec);
+  CellParts(const TetMesh& tets, const Sheets& sheets, const Arrangement& arrangement,
+            const ClippedMeshes& meshes, std::span<const unsigned char> isCut, const Exec& exec);
 
   std::size_t size() const { return cell_.size(); }
   std::size_t firstSkin() const { return firstSkin_; }
@@ -84,6 +84,7 @@ class CellParts {
   void linkPatch(std::size_t patch, std::span<const unsigned char> isCut, PatchLinks& links) const;
   void addSkinBorders(std::vector<Side>& sides) const;
   void joinSheets(std::vector<Side>& sides);
+  void joinAround(std::span<const Index> sheetParts);
   void joinSides(std::span<const Side> sides);
   void sumUp(std::span<const unsigned char> isCut);
   void sumPatch(std::size_t patch, std::span<const unsigned char> isCut);
@@ -92,6 +93,7 @@ class CellParts {
   void addTo(SolidSums& sums, const Triangle& t) const;
 
   const TetMesh& tets_;
+  const Sheets& sheets_;
   const Arrangement& arrangement_;
   const ClippedMeshes& meshes_;
   const Exec& exec_;

@@ -1,7 +1,6 @@
 #include "tessellate/clip.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -13,101 +12,21 @@
 namespace sherd {
 namespace {
 
-constexpr std::size_t kBlock = 64;  ///< triangles or polygons a task
-
-/// Vertices on one spot but for rounding: of the sheets' vertices, the crossings, and the corners of cut
-/// triangles, the only ones that can meet there, those within `spot` of one taken before. Found by hashing
-/// the cells of a grid so coarse that hardly any vertex is within that of another cell.
-class EqualPositions {
- public:
-  EqualPositions(const Arrangement& a, double spot)
-      : positions_(a.positions), same_(a.positions.size()), spot_(spot), inverseCell_(1 / (1024 * spot)) {
-    std::iota(same_.begin(), same_.end(), Index{0});
-    const std::size_t own = a.positions.size() - at(a.firstCrack);
-    slots_.assign(std::bit_ceil(2 * (own + 3 * a.cutTriangles.size()) + 8), -1);
-    for (const Index s : a.cutTriangles)
-      for (const Index v : a.surface[at(s)]) addCorner(v);
-    for (Index v = a.firstCrack; at(v) < a.positions.size(); ++v) add(v);
-  }
-
-  std::vector<Index> take() { return std::move(same_); }
-
- private:
-  using Cell = Eigen::Array<double, 3, 1>;
-
-  Cell cellOf(const Vec3& p) const { return (p.array() * inverseCell_).floor(); }
-
-  /// The corners of cut triangles come in no order, and each of them stays what it is.
-  void addCorner(Index v) {
-    std::size_t slot = hash(cellOf(positions_[at(v)])) & mask();
-    while (slots_[slot] >= 0 && slots_[slot] != v) slot = (slot + 1) & mask();
-    slots_[slot] = v;
-  }
-
-  void add(Index v) {
-    const Vec3& p = positions_[at(v)];
-    const Cell low = cellOf(p - Vec3::Constant(spot_)), high = cellOf(p + Vec3::Constant(spot_));
-    Nearest nearest;
-    if ((low == high).all()) {
-      look(low, p, nearest);
-    } else {
-      for (int corner = 0; corner < 8; ++corner) {
-        Cell cell = low;
-        for (int k = 0; k < 3; ++k)
-          if ((corner >> k & 1) != 0) cell[k] = high[k];
-        look(cell, p, nearest);
-      }
-    }
-    same_[at(v)] = nearest.vertex >= 0 ? nearest.vertex : v;
-    if (nearest.vertex < 0) addCorner(v);
-  }
-
-  struct Nearest {
-    Index vertex = -1;
-    double distance = std::numeric_limits<double>::infinity();
-  };
-
-  /// Of those as near as each other the one that was numbered first.
-  void look(const Cell& cell, const Vec3& p, Nearest& nearest) const {
-    for (std::size_t slot = hash(cell) & mask(); slots_[slot] >= 0; slot = (slot + 1) & mask()) {
-      const double distance = (positions_[at(slots_[slot])] - p).cwiseAbs().maxCoeff();
-      if (distance > spot_ || distance > nearest.distance) continue;
-      if (distance < nearest.distance || slots_[slot] < nearest.vertex) nearest = {slots_[slot], distance};
-    }
-  }
-
-  std::size_t mask() const { return slots_.size() - 1; }
-
-  static std::size_t hash(const Cell& cell) {
-    std::uint64_t h = 0;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      h = (h ^ std::bit_cast<std::uint64_t>(cell[i] + 0.0)) * 0x9E3779B97F4A7C15ULL;  // −0 and 0 are one
-      h ^= h >> 29;
-    }
-    return static_cast<std::size_t>(h);
-  }
-
-  std::span<const Vec3> positions_;
-  std::vector<Index> same_, slots_;
-  double spot_, inverseCell_;
-};
+constexpr std::size_t kBlock = 128;  ///< triangles or polygons a task
 
 class Clipper {
  public:
-  Clipper(const Arrangement& a, const Sheets& sheets, double spot, const Exec& exec)
-      : a_(a), sheets_(sheets), exec_(exec) {
-    result_.spot = spot;
-  }
+  Clipper(const Arrangement& a, const Sheets& sheets, const Exec& exec)
+      : a_(a), sheets_(sheets), exec_(exec) {}
 
   ClippedMeshes run() {
-    result_.same = EqualPositions(a_, result_.spot).take();
     const std::size_t skin = blocksOf(a_.cutTriangles.size()), all = skin + blocksOf(sheets_.polygons.size());
     std::vector<PartedTriangles<SkinTriangle>> skinBlocks(skin);
     std::vector<PartedTriangles<SheetTriangle>> sheetBlocks(all - skin);
     std::vector<int> forced(all, 0);
     std::vector<std::size_t> flat(all, 0);
     parallelFor(exec_, all, 1, [&](std::size_t begin, std::size_t end) {
-      CutPolygon cut(a_.positions, result_.same);
+      CutPolygon cut(a_.positions, a_.same);
       for (std::size_t b = begin; b < end; ++b)
         if (b < skin) {
           forced[b] = splitBlock(b, cut, skinBlocks[b]);
@@ -129,7 +48,7 @@ class Clipper {
   std::size_t countFlat(const PartedTriangles<T>& block) const {
     return static_cast<std::size_t>(std::ranges::count_if(block.triangles, [this](const T& t) {
       const auto& [a, b, c] = t.corners;
-      return isFlat(a_.positions[at(a)], a_.positions[at(b)], a_.positions[at(c)], result_.spot);
+      return isFlat(a_.positions[at(a)], a_.positions[at(b)], a_.positions[at(c)], a_.spot);
     }));
   }
 
@@ -186,7 +105,7 @@ class Clipper {
     const Index x = crossingsOn(sides[(whole + 2) % 3])[0].vertex,
                 y = crossingsOn(sides[(whole + 1) % 3])[0].vertex;
     for (const Index v : {x, y})
-      if (result_.same[at(v)] != v) return false;
+      if (a_.same[at(v)] != v) return false;
     const SheetPolygon& p = sheets_.polygons[at(segment.polygon)];
     // From the crossing on ab to that on ca the lone corner is on the left.
     const Index cellA = segment.from == x ? p.back : p.front, cellB = segment.from == x ? p.front : p.back;
@@ -238,7 +157,7 @@ class Clipper {
 
   int clipPolygon(Index polygon, CutPolygon& cut, PartedTriangles<SheetTriangle>& out) const {
     const SheetPolygon& p = sheets_.polygons[at(polygon)];
-    const std::span<const Index> own = sheets_.cornersOf(p), edges = sheets_.edgesOf(p);
+    const std::span<const Index> own = sheets_.cornersOf(p);
     const Index first = a_.byPolygonBegin[at(polygon)], last = a_.byPolygonBegin[at(polygon) + 1];
     const bool crossed = first != last;
     if (!crossed && !a_.sheetInside[at(own[0])]) return 0;
@@ -247,7 +166,7 @@ class Clipper {
     const std::size_t border = out.border.size();
     int forced = 0;
     if (crossed || !fan(corners, p, out)) forced = clipCorners(polygon, corners, cut, out);
-    nameWholeEdges(corners, edges, std::span(out.border).subspan(border));
+    nameWholeEdges(p, corners, std::span(out.border).subspan(border));
     return forced;
   }
 
@@ -272,14 +191,14 @@ class Clipper {
 
   /// Those that run from corner to corner, but for those on the cage's boundary, along which the skin may
   /// lie.
-  void nameWholeEdges(std::span<const Index> corners, std::span<const Index> edges,
+  void nameWholeEdges(const SheetPolygon& p, std::span<const Index> corners,
                       std::span<BorderEdge> border) const {
     const auto onCage = [&](Index vertex) { return sheets_.onCage[at(vertex - a_.firstCrack)] != 0; };
     for (BorderEdge& e : border)
       for (std::size_t i = 0; i < corners.size(); ++i)
         if (corners[i] == e.from && corners[(i + 1) % corners.size()] == e.to &&
             !(onCage(e.from) && onCage(e.to)))
-          e.whole = edges[i];
+          e.corner = p.first + static_cast<Index>(i);
   }
 
   /// A whole polygon, which is convex, by a fan from the corner that makes its smallest triangle largest.
@@ -309,7 +228,7 @@ class Clipper {
   }
 
   bool differ(std::span<const Index> corners) const {
-    return std::all_of(corners.begin(), corners.end(), [this](Index v) { return result_.same[at(v)] == v; });
+    return std::all_of(corners.begin(), corners.end(), [this](Index v) { return a_.same[at(v)] == v; });
   }
 
   const Arrangement& a_;
@@ -320,8 +239,8 @@ class Clipper {
 
 }  // namespace
 
-ClippedMeshes clip(const Arrangement& arrangement, const Sheets& sheets, double spot, const Exec& exec) {
-  return Clipper(arrangement, sheets, spot, exec).run();
+ClippedMeshes clip(const Arrangement& arrangement, const Sheets& sheets, const Exec& exec) {
+  return Clipper(arrangement, sheets, exec).run();
 }
 
 bool isFlat(const Vec3& a, const Vec3& b, const Vec3& c, double spot) {

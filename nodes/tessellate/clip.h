@@ -25,8 +25,6 @@ struct SheetTriangle {
 };
 
 struct ClippedMeshes {
-  std::vector<Index> same;  ///< per vertex: the one that stands for all on the same spot but for rounding
-  double spot = 0;          ///< m: how far apart vertices on one spot may be
   PartedTriangles<SkinTriangle> skin;    ///< of the cut triangles only, by source
   PartedTriangles<SheetTriangle> sheet;  ///< by polygon
   std::size_t forced = 0;                ///< triangles that rounding left flat or overlapping
@@ -38,10 +36,9 @@ bool isFlat(const Vec3& a, const Vec3& b, const Vec3& c, double spot);
 
 /// Traces the regions that the segments cut a triangle or polygon into and triangulates them. A region is
 /// followed from half-edge to half-edge by its cell alone, so the result closes whatever the rounded
-/// coordinates are. New vertices within `spot` (m, > 0) of one another, or of a corner of a cut triangle, are
-/// taken for one. A triangle that one segment cuts from side to side (nearly all) is split at once. Cost O(Σ
-/// n²) for n segments in a cut triangle or polygon.
-ClippedMeshes clip(const Arrangement& arrangement, const Sheets& sheets, double spot, const Exec& exec);
+/// coordinates are. Vertices on one spot are taken for one. A triangle that one segment cuts from side to
+/// side (nearly all) is split at once. Cost O(Σ n²) for n segments in a cut triangle or polygon.
+ClippedMeshes clip(const Arrangement& arrangement, const Sheets& sheets, const Exec& exec);
 
 /// Barycentric coordinates of the point of side pq, of corners number p and q, that is closest to `point`.
 CornerWeights onSide(const Vec3& from, const Vec3& to, Eigen::Index p, Eigen::Index q, const Vec3& point);

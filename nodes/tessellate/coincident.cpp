@@ -62,12 +62,10 @@ class LayerRemover {
   void run() {
     bool any = false;
     for (std::size_t v = 0; v < tookIn_.size(); ++v)
-      if (meshes_.same[v] != static_cast<Index>(v)) any = true, tookIn_[at(meshes_.same[v])] = 1;
+      if (a_.same[v] != static_cast<Index>(v)) any = true, tookIn_[at(a_.same[v])] = 1;
     if (!any) return;
-    std::erase_if(meshes_.skin.triangles,
-                  [&](SkinTriangle& t) { return loseCorner(t.corners, meshes_.same); });
-    std::erase_if(meshes_.sheet.triangles,
-                  [&](SheetTriangle& t) { return loseCorner(t.corners, meshes_.same); });
+    std::erase_if(meshes_.skin.triangles, [&](SkinTriangle& t) { return loseCorner(t.corners, a_.same); });
+    std::erase_if(meshes_.sheet.triangles, [&](SheetTriangle& t) { return loseCorner(t.corners, a_.same); });
     gather();
     std::sort(layers_.begin(), layers_.end());
     std::map<Triangle, std::optional<Layer>> replaced;

@@ -1,52 +1,22 @@
 #include "tessellate/envelope.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "base/parallel.h"
 #include "geometry/approx.h"
+#include "tessellate/first_numbers.h"
 #include "tessellate/symbolic_sign.h"
 #include "tessellate/tet_envelope.h"
 
 namespace sherd {
 namespace {
 
-constexpr std::size_t kBlock = 32;  ///< tetrahedra a task
+constexpr std::size_t kBlock = 64;  ///< tetrahedra a task
 /// How much less extended precision is off than doubles are.
 constexpr double kExtended = 0x1p-11;
 
-/// Numbers names as they come.
-class VertexNumbers {
- public:
-  /// `most`: names that will be asked for, at most.
-  explicit VertexNumbers(std::size_t most) : slots_(std::bit_ceil(2 * most + 8), -1) {}
-
-  Index numberOf(const VertexName& name) {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t slot = hash(name) & mask;
-    while (slots_[slot] >= 0 && !(names_[at(slots_[slot])] == name)) slot = (slot + 1) & mask;
-    if (slots_[slot] < 0) {
-      slots_[slot] = static_cast<Index>(names_.size());
-      names_.push_back(name);
-    }
-    return slots_[slot];
-  }
-  std::size_t size() const { return names_.size(); }
-  std::vector<VertexName> take() { return std::move(names_); }
-
- private:
-  static std::size_t hash(const VertexName& n) {
-    std::uint64_t h = 0;
-    for (const Tetra* part : {&n.nodes, &n.ranks})
-      for (const Index i : *part)
-        h = (h ^ static_cast<std::uint32_t>(i)) * 0x9E3779B97F4A7C15ULL, h ^= h >> 32;
-    return static_cast<std::size_t>(h);
-  }
-
-  std::vector<VertexName> names_;
-  std::vector<Index> slots_;
-};
+std::uint64_t hashOf(const VertexName& name) { return hashOfIndices(name.ranks, hashOfIndices(name.nodes)); }
 
 template <class Number>
 Number determinant(const std::array<std::array<Number, 4>, 4>& m, std::size_t n) {
@@ -159,12 +129,17 @@ bool liesOutside(const TetMesh& tets, std::size_t t) {
 struct Block {
   BlockPolygons found;
   std::vector<VertexName> names;  ///< each once
-  std::vector<Index> nameOf;      ///< per corner
+  std::vector<std::uint64_t> hashes;
+  std::vector<Index> nameOf;  ///< per corner
 
   void nameCorners() {
-    VertexNumbers numbers(found.corners.size());
+    FirstNumbers<VertexName> numbers(found.corners.size());
     nameOf.reserve(found.corners.size());
-    for (const VertexName& name : found.corners) nameOf.push_back(numbers.numberOf(name));
+    for (const VertexName& name : found.corners) {
+      const std::uint64_t hash = hashOf(name);
+      nameOf.push_back(numbers.numberOf(name, hash));
+      if (numbers.size() > hashes.size()) hashes.push_back(hash);
+    }
     names = numbers.take();
   }
 };
@@ -194,11 +169,11 @@ ExactSheets exactSheets(const TetMesh& tets, const SiteValues& values, const Exe
   Sheets& sheets = result.sheets;
   std::size_t corners = 0, named = 0;
   for (const Block& block : blocks) corners += block.nameOf.size(), named += block.names.size();
-  VertexNumbers numbers(named);
+  FirstNumbers<VertexName> numbers(named);
   sheets.corners.reserve(corners);
   result.lines.reserve(corners);
   std::vector<Index> numberOf;
-  for (const auto& [found, names, nameOf] : blocks) {
+  for (const auto& [found, names, hashes, nameOf] : blocks) {
     Index first = static_cast<Index>(sheets.corners.size());
     for (const BlockPolygons::Polygon& p : found.polygons) {
       sheets.polygons.push_back({first, p.count, values.site(p.front), values.site(p.back), p.tet});
@@ -206,7 +181,7 @@ ExactSheets exactSheets(const TetMesh& tets, const SiteValues& values, const Exe
       first += p.count;
     }
     numberOf.clear();
-    for (const VertexName& name : names) numberOf.push_back(numbers.numberOf(name));
+    for (std::size_t k = 0; k < names.size(); ++k) numberOf.push_back(numbers.numberOf(names[k], hashes[k]));
     sheets.onCage.resize(numbers.size(), 0);
     for (std::size_t c = 0; c < nameOf.size(); ++c) {
       const Index vertex = numberOf[at(nameOf[c])];
@@ -220,14 +195,11 @@ ExactSheets exactSheets(const TetMesh& tets, const SiteValues& values, const Exe
   sheets.vertices.resize(names.size());
   sheets.simplexOf.reserve(names.size());
   for (const VertexName& name : names) sheets.simplexOf.push_back(name.nodes);
-  TaskGroup tasks;
-  tasks.run([&] { sheets.connect(); });
   const double tolerance = 0x1p-52 * boxOf(tets.nodes).diagonal();
   parallelFor(exec, names.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       sheets.vertices[v] = positionOf(names[v], values, tets, tolerance);
   });
-  tasks.wait();
   return result;
 }
 

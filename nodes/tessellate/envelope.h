@@ -37,8 +37,9 @@ struct ExactSheets {
 };
 
 /// All predicates are exact in the doubles of `values` (filtered, then in rational numbers), with its ties;
-/// positions are rounded. Tetrahedra that lie outside of the surface are left out. Cost O(tets · (sites +
-/// m³)) with m sites that contend for a tetrahedron, mostly 1 to 3; in parallel over tetrahedra.
+/// positions are rounded. The sheets are not connected yet. Tetrahedra that lie outside of the surface are
+/// left out. Cost O(tets · (sites + m³)) with m sites that contend for a tetrahedron, mostly 1 to 3; in
+/// parallel over tetrahedra.
 ExactSheets exactSheets(const TetMesh& tets, const SiteValues& values, const Exec& exec);
 
 }  // namespace sherd

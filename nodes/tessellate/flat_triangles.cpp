@@ -42,7 +42,7 @@ class FlatAbsorber {
   const Vec3& point(Index v) const { return a_.positions[at(v)]; }
 
   bool isFlat(const Triangle& t) const {
-    return sherd::isFlat(point(t[0]), point(t[1]), point(t[2]), meshes_.spot);
+    return sherd::isFlat(point(t[0]), point(t[1]), point(t[2]), a_.spot);
   }
 
   /// The corner where the longest side begins.

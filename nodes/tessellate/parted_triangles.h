@@ -12,7 +12,7 @@ namespace sherd {
 /// An edge of one triangle of its part, in its direction.
 struct BorderEdge {
   Index from, to;  ///< vertices
-  Index whole;     ///< the sheets' edge that it is, from end to end; −1 for any other
+  Index corner;    ///< of the sheets: it is the edge that begins there, from end to end; −1 for any other
 };
 
 /// T has `corners`.

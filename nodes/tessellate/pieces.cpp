@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 #include <optional>
 
 #include "base/parallel.h"
 #include "geometry/solid.h"
 #include "tessellate/coincident.h"
+#include "tessellate/first_numbers.h"
 #include "tessellate/flat_triangles.h"
 #include "tessellate/solid_merger.h"
 #include "tessellate/solids.h"
@@ -23,9 +23,9 @@ constexpr double kSmall = 1e-6;
 
 class Assembler {
  public:
-  Assembler(const TetMesh& tets, Arrangement&& a, ClippedMeshes&& m, const AssembleParams& params,
-            const Exec& exec)
-      : tets_(tets), a_(std::move(a)), m_(std::move(m)), params_(params), exec_(exec) {}
+  Assembler(const TetMesh& tets, const Sheets& sheets, Arrangement&& a, ClippedMeshes&& m,
+            const AssembleParams& params, const Exec& exec)
+      : tets_(tets), sheets_(sheets), a_(std::move(a)), m_(std::move(m)), params_(params), exec_(exec) {}
 
   Fragments run() {
     std::vector<unsigned char> isCut(a_.surface.size(), 0);
@@ -34,7 +34,7 @@ class Assembler {
     removeThinLayers(a_, m_, isCut);
     const std::size_t absorbed = absorbFlatTriangles(tets_, a_, m_, isCut);
     out_.counts.forcedTriangles = m_.forced - std::min(m_.forced, absorbed);
-    parts_.emplace(tets_, a_, m_, isCut, exec_);
+    parts_.emplace(tets_, sheets_, a_, m_, isCut, exec_);
     if (exec_.cancelled()) return {};
     findPieces();
     numberSheets();
@@ -106,19 +106,14 @@ class Assembler {
 
   /// Sheets are numbered as they come.
   void numberSheets() {
-    std::map<std::array<Index, 2>, Index> numbers;
-    std::array<Index, 2> last{-1, -1};
-    Index number = -1;
+    FirstNumbers<std::array<Index, 2>> numbers(m_.sheet.parts());
     sheetNumbers_.assign(m_.sheet.parts(), -1);
     for (std::size_t k = 0; k < sheetNumbers_.size(); ++k) {
       const std::size_t back = parts_->firstSheet() + 2 * k;
       if (!isCrack(back)) continue;
       const Index one = parts_->cell(back), other = parts_->cell(back + 1);
-      if (const std::array<Index, 2> cells{std::min(one, other), std::max(one, other)}; cells != last) {
-        last = cells;
-        number = numbers.try_emplace(cells, static_cast<Index>(numbers.size())).first->second;
-      }
-      sheetNumbers_[k] = number;
+      const std::array<Index, 2> cells{std::min(one, other), std::max(one, other)};
+      sheetNumbers_[k] = numbers.numberOf(cells, hashOfIndices(cells));
     }
   }
 
@@ -234,6 +229,7 @@ class Assembler {
   }
 
   const TetMesh& tets_;
+  const Sheets& sheets_;
   Arrangement a_;
   ClippedMeshes m_;
   AssembleParams params_;
@@ -251,9 +247,9 @@ class Assembler {
 
 }  // namespace
 
-Fragments assemblePieces(const TetMesh& tets, Arrangement arrangement, ClippedMeshes meshes,
-                         const AssembleParams& params, const Exec& exec) {
-  return Assembler(tets, std::move(arrangement), std::move(meshes), params, exec).run();
+Fragments assemblePieces(const TetMesh& tets, const Sheets& sheets, Arrangement arrangement,
+                         ClippedMeshes meshes, const AssembleParams& params, const Exec& exec) {
+  return Assembler(tets, sheets, std::move(arrangement), std::move(meshes), params, exec).run();
 }
 
 }  // namespace sherd

@@ -19,7 +19,7 @@ struct AssembleParams {
 /// all of Fragments but `tets`, `material`, and what the cells' search found. `tets` has the links and
 /// patches of geometry/surface_links.h. When exec is cancelled it ends soon with something unfinished: check
 /// exec.cancelled() afterwards. Cost: copying the surface, plus O(patches + new triangles).
-Fragments assemblePieces(const TetMesh& tets, Arrangement arrangement, ClippedMeshes meshes,
-                         const AssembleParams& params, const Exec& exec);
+Fragments assemblePieces(const TetMesh& tets, const Sheets& sheets, Arrangement arrangement,
+                         ClippedMeshes meshes, const AssembleParams& params, const Exec& exec);
 
 }  // namespace sherd

@@ -22,7 +22,8 @@ void Sheets::connect() {
   for (std::size_t c = 0; c < corners.size(); ++c)
     sides[at(fill[at(std::min(corners[c], next[c]))]++)] = {std::max(corners[c], next[c]),
                                                             static_cast<Index>(c)};
-  edges.clear();
+  edges.clear(), byEdgeBegin.clear();
+  byEdge.resize(corners.size());
   edgeOf.resize(corners.size());
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const auto first = sides.begin() + begin[v], last = sides.begin() + begin[v + 1];
@@ -30,10 +31,16 @@ void Sheets::connect() {
       return a.high != b.high ? a.high < b.high : a.corner < b.corner;
     });
     for (auto s = first; s != last; ++s) {
-      if (s == first || s->high != (s - 1)->high) edges.push_back({static_cast<Index>(v), s->high});
+      const Index place = static_cast<Index>(s - sides.begin());
+      if (s == first || s->high != (s - 1)->high) {
+        edges.push_back({static_cast<Index>(v), s->high});
+        byEdgeBegin.push_back(place);
+      }
       edgeOf[at(s->corner)] = static_cast<Index>(edges.size()) - 1;
+      byEdge[at(place)] = s->corner;
     }
   }
+  byEdgeBegin.push_back(static_cast<Index>(corners.size()));
 }
 
 }  // namespace sherd

@@ -24,6 +24,7 @@ struct Sheets {
   std::vector<Index> corners;               ///< into vertices
   std::vector<Index> edgeOf;                ///< per corner: the edge from it to the polygon's next corner
   std::vector<std::array<Index, 2>> edges;  ///< ends, ends[0] < ends[1], ascending
+  std::vector<Index> byEdgeBegin, byEdge;   ///< per edge: the corners where a polygon begins to run along it
   std::vector<unsigned char> onCage;  ///< per vertex: lies on the cage's boundary, outside of the surface
   std::vector<Tetra>
       simplexOf;            ///< per vertex: the nodes, ascending and padded with −1, between which it lies
@@ -35,12 +36,15 @@ struct Sheets {
   std::span<const Index> edgesOf(const SheetPolygon& p) const {
     return std::span(edgeOf).subspan(at(p.first), at(p.count));
   }
-  /// Does the polygon run from ends[0] to ends[1] along its edge number `slot`?
-  bool forward(const SheetPolygon& p, Index slot) const {
-    const std::size_t c = at(p.first + slot);
-    return edges[at(edgeOf[c])][0] == corners[c];
+  std::span<const Index> cornersAlong(Index edge) const {
+    return std::span(byEdge).subspan(at(byEdgeBegin[at(edge)]),
+                                     at(byEdgeBegin[at(edge) + 1] - byEdgeBegin[at(edge)]));
   }
-  /// Fills edges and edgeOf from the corners. Cost O(corners) for bounded vertex degree.
+  /// Does the polygon run along its edge number `slot` from the lower end to the higher?
+  bool forward(const SheetPolygon& p, Index slot) const {
+    return corners[at(p.first + slot)] < corners[at(p.first + (slot + 1 == p.count ? 0 : slot + 1))];
+  }
+  /// Fills edgeOf, edges, byEdgeBegin and byEdge from the corners. Cost O(corners) for bounded vertex degree.
   void connect();
 };
 

@@ -17,13 +17,20 @@ struct Cut {
   Arrangement arrangement;
 };
 
+/// How far rounding may put vertices apart that are one: some units of the coordinates, and what the cells'
+/// values bring along.
+double spotOf(const TetMesh& tets) {
+  const Box box = boxOf(tets.nodes);
+  return 0x1p-48 * box.diagonal() + 0x1p-51 * box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
+}
+
 Result<Cut> cutExactly(const TetMesh& tets, const Partition& cells, const Exec& exec) {
   const SiteValues values(cells, exec);
   if (exec.cancelled()) return cancelledError();
   ExactSheets exact = exactSheets(tets, values, exec);
   if (exec.cancelled()) return cancelledError();
   exec.progress(0.3);
-  SHERD_ASSIGN(Arrangement arrangement, arrangeExact(tets, exact, values, exec));
+  SHERD_ASSIGN(Arrangement arrangement, arrangeExact(tets, exact, values, spotOf(tets), exec));
   return Cut{std::move(exact.sheets), std::move(arrangement)};
 }
 
@@ -31,7 +38,7 @@ Result<Cut> cutCanonically(const TetMesh& tets, const Partition& cells, const Ex
   Cut cut{canonicalSheets(cells), {}};
   if (exec.cancelled()) return cancelledError();
   exec.progress(0.1);
-  SHERD_ASSIGN(cut.arrangement, arrangeRounded(tets, cells.label, cut.sheets, exec));
+  SHERD_ASSIGN(cut.arrangement, arrangeRounded(tets, cells.label, cut.sheets, spotOf(tets), exec));
   return cut;
 }
 
@@ -68,13 +75,6 @@ OwnSurface ownSurface(const TetMesh& cage) {
   return own;
 }
 
-/// How far rounding may put vertices apart that are one: some units of the coordinates, and what the cells'
-/// values bring along.
-double spotOf(const TetMesh& tets) {
-  const Box box = boxOf(tets.nodes);
-  return 0x1p-48 * box.diagonal() + 0x1p-51 * box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
-}
-
 double enclosedVolume(const TrianglePatches& patches) {
   return std::accumulate(patches.sums.begin(), patches.sums.end(), 0.0,
                          [](double sum, const SolidSums& s) { return sum + s.volume; });
@@ -87,13 +87,15 @@ Result<Cut> cutConforming(const OwnSurface& own, const Partition& cells, CellMod
     const SiteValues values(cells, exec);
     if (exec.cancelled()) return cancelledError();
     cut.sheets = exactSheets(*own.tets, values, exec).sheets;
+    cut.sheets.connect();
     for (std::size_t n = 0; n < nodeCell.size(); ++n)
       nodeCell[n] = values.site(values.least(static_cast<Index>(n)));
   } else {
     cut.sheets = canonicalSheets(cells);
   }
   if (exec.cancelled()) return cancelledError();
-  SHERD_ASSIGN(cut.arrangement, arrangeConforming(*own.tets, own.nodeOf, nodeCell, cut.sheets));
+  SHERD_ASSIGN(cut.arrangement,
+               arrangeConforming(*own.tets, own.nodeOf, nodeCell, cut.sheets, spotOf(*own.tets)));
   return cut;
 }
 
@@ -116,14 +118,15 @@ Result<Fragments> tessellate(const Partition& cells, const TessellateParams& par
                                                           : cutCanonically(*tets, cells, exec));
   if (exec.cancelled()) return cancelledError();
   exec.progress(0.5);
-  ClippedMeshes meshes = clip(cut.arrangement, cut.sheets, spotOf(*tets), exec);
+  ClippedMeshes meshes = clip(cut.arrangement, cut.sheets, exec);
   if (exec.cancelled()) return cancelledError();
   exec.progress(0.8);
   const AssembleParams assembly{
       .sites = cells.siteCount(),
       .minVolume = std::max(params.minVolume * enclosedVolume(tets->patches), params.minVolumeAbsolute),
       .density = cells.material.density};
-  Fragments result = assemblePieces(*tets, std::move(cut.arrangement), std::move(meshes), assembly, exec);
+  Fragments result =
+      assemblePieces(*tets, cut.sheets, std::move(cut.arrangement), std::move(meshes), assembly, exec);
   if (exec.cancelled()) return cancelledError();
   if (const std::string& parent = tets->surface->piece; !parent.empty())
     for (Piece& piece : result.pieces)  // names grow with depth: piece_0003_0002

@@ -100,7 +100,7 @@ void TetSearch::addSegment(const TriangleInTet& triangle, const SegmentEnd (&end
       out.surfaceEnds.push_back(found);
     } else {
       // Along the polygon's border the surface's inside begins at the segment's start, and ends at its end.
-      found.a = exact_.sheets.edgesOf(p)[at(end.slot)], found.b = -1, found.through = surface;
+      found.a = p.first + end.slot, found.b = -1, found.through = surface;
       found.fromFront = exact_.sheets.forward(p, end.slot) != isTo;
       out.sheetEnds.push_back(found);
     }

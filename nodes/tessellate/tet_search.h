@@ -11,7 +11,7 @@ namespace sherd {
 
 /// An end of a segment as found, named by what crosses what.
 struct FoundEnd {
-  Index a, b;     ///< of the surface edge, ascending; or the sheet edge and −1
+  Index a, b;     ///< of the surface edge, ascending; or the corner where the sheet edge begins, and −1
   Index through;  ///< the polygon; or the surface triangle
   Index segment;  ///< 2 · segment + (0: from, 1: to)
   bool fromFront;

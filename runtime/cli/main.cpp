@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/memory.h"
 #include "base/partial_file.h"
 #include "cli/command_line.h"
 
@@ -59,6 +60,7 @@ int terminalWidth() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  sherd::keepFreedMemory();
   // Results must not depend on the number of threads: BLAS and OpenMP run single-threaded. OpenBLAS reads
   // this when the node pack that links it is loaded.
   setenv("OPENBLAS_NUM_THREADS", "1", 1);

@@ -14,6 +14,7 @@
 #include <memory>
 #include <string>
 
+#include "base/memory.h"
 #include "cvd/cvd.h"
 #include "embed/embed.h"
 #include "load_mesh/load_mesh.h"
@@ -136,6 +137,7 @@ void add(const std::string& file, int tetCount, std::vector<int> degrees) {
 }  // namespace sherd
 
 int main(int argc, char** argv) {
+  sherd::keepFreedMemory();  // as the launcher does
   benchmark::Initialize(&argc, argv);
   const std::string assets = SHERD_SOURCE_DIR "/assets/";
   sherd::add(assets + "wall.obj", 1400, {3, 18});

@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 
+#include "base/memory.h"
 #include "bench/measured_table.h"
 
 namespace sherd::bench {
@@ -38,6 +39,7 @@ void read(int argc, char** argv, const std::string& program, const std::set<std:
 
 int runParts(int argc, char** argv, const std::string& program, const std::string& build, Options options,
              const std::set<std::string>& takes, const std::vector<Part>& parts) {
+  keepFreedMemory();  // as the launcher does
   benchmark::Initialize(&argc, argv);
   options.out = build + "/" + program;
   read(argc, argv, program, takes, options);
