@@ -63,7 +63,7 @@ class Arranger {
     TaskGroup tasks;
     tasks.run([this] { exact_.sheets.connect(); });  // one thread's work, and not needed to find segments
     parallelFor(exec_, cutTets_, kBlock, [&](std::size_t begin, std::size_t end) {
-      TetSearch search(tets_, exact_, values_, a_.surfaceLabel);
+      TetSearch search(tets_, exact_, values_, a_.surfaceLabel, 2 * a_.spot);
       for (std::size_t i = begin; i < end; ++i)
         search.search(tetBegin_[i], tetBegin_[i + 1], found_[begin / kBlock]);
     });

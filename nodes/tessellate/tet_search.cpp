@@ -15,7 +15,10 @@ void TetSearch::search(Index first, Index last, FoundSegments& out) {
     const Triangle& corners = tets_.surface->triangles[at(s)];
     if (isInOneCell(corners, tet)) continue;
     std::optional<TriangleInTet> triangle;
+    Box box;
+    for (const Index v : corners) box.add(positions[at(v)]);
     for (Index p = first; p < last; ++p) {
+      if (!box.overlaps(boxes_[at(p - first)])) continue;
       if (planes_[at(p - first)].misses(positions[at(corners[0])], positions[at(corners[1])],
                                         positions[at(corners[2])]))
         continue;
@@ -30,10 +33,14 @@ void TetSearch::search(Index first, Index last, FoundSegments& out) {
 
 void TetSearch::prepare(Index first, Index last) {
   frame_.emplace(tets_, values_, exact_.sheets.polygons[at(first)].tet);
-  ranks_.clear(), planes_.clear(), toFirst_.clear();
+  ranks_.clear(), planes_.clear(), boxes_.clear(), toFirst_.clear();
   for (Index p = first; p < last; ++p) {
     const auto& [back, front] = exact_.ranks[at(p)];
     planes_.emplace_back(*frame_, back, front);
+    Box& box = boxes_.emplace_back();
+    for (const Index v : exact_.sheets.cornersOf(exact_.sheets.polygons[at(p)]))
+      box.add(exact_.sheets.vertices[at(v)]);
+    box.low.array() -= rounding_, box.high.array() += rounding_;
     ranks_.push_back(back);
     ranks_.push_back(front);
   }

@@ -32,10 +32,11 @@ struct FoundSegments {
 class TetSearch {
  public:
   /// `labels`: per surface vertex its cell, −1 where not known yet. Of those, only the vertices that lie in a
-  /// searched tetrahedron are read and written.
+  /// searched tetrahedron are read and written. `rounding`: m, a bound of how far the sheets' vertices are
+  /// from where they are thought to be.
   TetSearch(const TetMesh& tets, const ExactSheets& exact, const SiteValues& values,
-            std::vector<Index>& labels)
-      : tets_(tets), exact_(exact), values_(values), labels_(labels) {}
+            std::vector<Index>& labels, double rounding)
+      : tets_(tets), exact_(exact), values_(values), labels_(labels), rounding_(rounding) {}
 
   /// Polygons first … last − 1 are those of one tetrahedron. Adds the segments in which they meet the
   /// surface, and names the cells of the vertices in the tetrahedron. Cost O(held triangles · polygons),
@@ -54,9 +55,11 @@ class TetSearch {
   const ExactSheets& exact_;
   const SiteValues& values_;
   std::vector<Index>& labels_;
+  double rounding_;
   std::optional<TetFrame> frame_;
   std::vector<Index> ranks_;         ///< that share the tetrahedron, ascending
   std::vector<SheetPlane> planes_;   ///< per polygon
+  std::vector<Box> boxes_;           ///< per polygon: it lies within
   std::vector<SheetPlane> toFirst_;  ///< per rank but the first: its value less the first's
 };
 
