@@ -211,7 +211,8 @@ TEST_F(Export, CoordinatesAreTheVeryDoubles) {
 TEST_F(Export, NamesAndAttributes) {
   ASSERT_TRUE(run(test::slicedBox(3)).ok());
   const Obj surface = readObj(out("piece_0002_surface.obj")), crack = readObj(out("piece_0002_crack.obj"));
-  EXPECT_EQ(surface.groups, std::vector<std::string>{"piece_0002"});
+  EXPECT_EQ(std::set<std::string>(surface.groups.begin(), surface.groups.end()),
+            std::set<std::string>{"piece_0002"});
   EXPECT_EQ(std::set<std::string>(surface.materials.begin(), surface.materials.end()),
             (std::set<std::string>{"paint", "base"}));
   EXPECT_EQ(surface.normals, 4u);  // of the four sides of a middle slice
@@ -247,6 +248,29 @@ TEST_F(Export, AMaterialNamedAsOursIsWarnedOf) {
   ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
   ASSERT_EQ(listener.warnings.size(), 1u);
   EXPECT_NE(listener.warnings[0].find("'inside'"), std::string::npos);
+}
+
+TEST_F(Export, FacesOfAnEarlierFractureAreSkinOfThisOne) {
+  TriMesh box = test::boxMesh(Vec3::Zero(), Vec3(2, 1, 1));
+  box.materials = {"crackle glaze", "inside"};
+  box.piece = "piece_0001";
+  ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
+  EXPECT_TRUE(listener.warnings.empty());
+  std::istringstream lines(slurp(out("piece_0001_surface.obj")));
+  std::string last;
+  std::size_t faces = 0;
+  std::set<std::string> materials;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("usemtl ")) materials.insert(line.substr(7));
+    if (line.starts_with("usemtl ") || line.starts_with("g ")) last = line;
+    if (!line.starts_with("f ")) continue;
+    EXPECT_EQ(last, "g piece_0001");
+    ++faces;
+  }
+  EXPECT_GT(faces, 8u);
+  EXPECT_EQ(materials, (std::set<std::string>{"crackle glaze", "inside"}));
+  const std::string crack = slurp(out("piece_0001_crack.obj"));
+  EXPECT_NE(crack.find("usemtl inside\ng piece_0001_crack_with_piece_0002\nf "), std::string::npos);
 }
 
 TEST_F(Export, TextureDensityScalesCrackUvs) {
