@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "base/rng.h"
+#include "embed/embed.h"
 #include "support/prepared_cells.h"
 
 namespace sherd::bench {
@@ -37,14 +38,14 @@ std::string PaperCase::path() const { return std::string(SHERD_SOURCE_DIR "/") +
 
 std::vector<PaperCase> paperCases() {
   return {
-      {"horse", "../shared/meshes/horse.obj", 5256, 7, 1},
-      {"horse", "../shared/meshes/horse.obj", 5256, 67, 4},
-      {"bunny", "../shared/meshes/bunny.obj", 5301, 3, 1},
-      {"bunny", "../shared/meshes/bunny.obj", 5301, 48, 4},
-      {"mushroom", "assets/mushroom.obj", 1309, 5, 2},
-      {"mushroom", "assets/mushroom.obj", 1309, 81, 3},
-      {"wall", "assets/wall.obj", 1408, 3, 0.5},
-      {"wall", "assets/wall.obj", 1408, 18, 0.5},
+      {"horse", "../shared/meshes/horse.obj", 5256, 7, 1, 74},
+      {"horse", "../shared/meshes/horse.obj", 5256, 67, 4, 74},
+      {"bunny", "../shared/meshes/bunny.obj", 5301, 3, 1, 147},
+      {"bunny", "../shared/meshes/bunny.obj", 5301, 48, 4, 147},
+      {"mushroom", "assets/mushroom.obj", 1309, 5, 2, 250},
+      {"mushroom", "assets/mushroom.obj", 1309, 81, 3, 250},
+      {"wall", "assets/wall.obj", 1408, 3, 0.5, 3},
+      {"wall", "assets/wall.obj", 1408, 18, 0.5, 3},
   };
 }
 
@@ -52,6 +53,20 @@ Body bodyOf(const PaperCase& c) {
   const auto prepared =
       orExit(test::prepareCells(c.path(), {.tets = c.tets, .counts = {c.sites}}, test::defaultStore()));
   return {prepared.embedding, test::volumeWeights(prepared.embedding->tets)};
+}
+
+Body bodyInPaperDimensions(const PaperCase& c) {
+  Body body = bodyOf(c);
+  if (c.dimensions == 3) return body;
+  const EmbedParams params{.metric = EmbedParams::Metric::Interior,
+                           .source = EmbedParams::Source::Surface,
+                           .filter = EmbedParams::Filter::Diffusion,
+                           .extension = EmbedParams::Extension::MeanValue,
+                           .dimensions = c.dimensions,
+                           .tolerance = 0,
+                           .time = 0.01};
+  body.embedding = std::make_shared<const Embedding>(orExit(embed(body.embedding->tets, params, Exec{})));
+  return body;
 }
 
 Body cloud(std::size_t nodes, Eigen::Index dimensions) {

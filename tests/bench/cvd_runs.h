@@ -26,14 +26,18 @@ struct PaperCase {
   const char* name;
   const char* file;
   int tets, sites;
-  double goal;  ///< ms
+  double goal;     ///< ms
+  int dimensions;  ///< of the paper's embedding; 3: positions
 
   std::string path() const;
 };
 /// The paper's models and numbers of sites.
 std::vector<PaperCase> paperCases();
-/// The case's body, all volumes as weights.
+/// The case's body in the embedding that graphs have by default, all volumes as weights.
 Body bodyOf(const PaperCase& c);
+/// The same in as many dimensions as the paper's: the lowest modes of the cage's surface, carried inward by
+/// mean value coordinates, under a diffusion filter of so short a time that all of them count.
+Body bodyInPaperDimensions(const PaperCase& c);
 
 /// Points in a box of five dimensions or more, all but three of which bend; in the order in which
 /// Tetrahedralize numbers nodes, along a Morton curve. All weigh 1.

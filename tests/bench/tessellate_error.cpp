@@ -9,6 +9,10 @@
 
 #include <Eigen/LU>
 
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "geometry/surface_tree.h"
+
 namespace sherd::bench {
 namespace {
 
@@ -60,6 +64,14 @@ class Locator {
   int n_ = 1;
   std::vector<std::vector<std::size_t>> cells_;
 };
+
+/// Interpolated linearly in a tetrahedron.
+Eigen::VectorXd embedded(const Embedding& embedding, std::size_t tet, const Vec4& weights) {
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(embedding.coordinates.rows());
+  for (int c = 0; c < 4; ++c)
+    x += weights[c] * embedding.coordinates.col(embedding.tets->tets[tet][static_cast<std::size_t>(c)]);
+  return x;
+}
 
 /// Of an embedded point between two cells.
 double errorOf(const Eigen::VectorXd& x, Index i, Index j, const Eigen::MatrixXd& sites) {
@@ -142,10 +154,8 @@ CrackError crackError(const Fragments& f, const Partition& cells) {
         const auto [i, j] = std::minmax(piece.cell, f.pieces[at(piece.crackNeighbour[t])].cell);
         if (i == j || !seen.insert({v, i, j}).second) continue;
         const auto [tet, weights] = locator.find(f.positions[at(v)]);
-        Eigen::VectorXd x = Eigen::VectorXd::Zero(embedding.coordinates.rows());
-        for (int c = 0; c < 4; ++c)
-          x += weights[c] * embedding.coordinates.col(embedding.tets->tets[tet][static_cast<std::size_t>(c)]);
-        const double error = errorOf(x, i, j, cells.sites) / embedding.diameter;
+        const double error =
+            errorOf(embedded(embedding, tet, weights), i, j, cells.sites) / embedding.diameter;
         result.rms += error * error;
         result.maximum = std::max(result.maximum, error);
         ++result.vertices;
@@ -195,6 +205,60 @@ std::vector<double> convexReference(const Partition& cells, const std::vector<Ve
   const double sum = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   for (double& v : volumes) v /= sum;
   return volumes;
+}
+
+SamplePoints pointsWithin(const TriMesh& surface, int cubesPerAxis) {
+  constexpr std::uint64_t kStream = 0x766f6c756d65;
+  const SurfaceTree tree(surface.positions, surface.triangles);
+  const Box box = boxOf(surface.positions);
+  const Vec3 cube = (box.high - box.low) / cubesPerAxis;
+  const auto n = static_cast<std::size_t>(cubesPerAxis);
+  SamplePoints result;
+  for (std::size_t set = 0; set < result.sets.size(); ++set) {
+    const Rng random(set, kStream);
+    std::vector<std::vector<Vec3>> layers(n);
+    parallelFor(Exec{}, n, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        for (std::size_t c = 0; c < n * n; ++c) {
+          const std::uint64_t number = 3 * (k * n * n + c);
+          const Vec3 within(static_cast<double>(c % n) + random.uniformAt(number),
+                            static_cast<double>(c / n) + random.uniformAt(number + 1),
+                            static_cast<double>(k) + random.uniformAt(number + 2));
+          const Vec3 p = box.low + cube.cwiseProduct(within);
+          if (tree.contains(p)) layers[k].push_back(p);
+        }
+    });
+    for (const auto& layer : layers)
+      result.sets[set].insert(result.sets[set].end(), layer.begin(), layer.end());
+  }
+  return result;
+}
+
+SampledVolumes sampledVolumes(const Partition& cells, const SamplePoints& points) {
+  constexpr std::size_t kBlock = 4096;
+  const Embedding& embedding = *cells.embedding;
+  const Locator locator(*embedding.tets);
+  const auto countsOf = [&](const std::vector<Vec3>& set) {
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(cells.sites.cols());
+    return parallelSum(Exec{}, set.size(), kBlock, none, [&](std::size_t begin, std::size_t end) {
+      Eigen::VectorXd counts = none;
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto [tet, weights] = locator.find(set[i]);
+        Eigen::Index nearest = 0;
+        (cells.sites.colwise() - embedded(embedding, tet, weights))
+            .colwise()
+            .squaredNorm()
+            .minCoeff(&nearest);
+        counts[nearest] += 1;
+      }
+      return counts;
+    });
+  };
+  const Eigen::VectorXd one = countsOf(points.sets[0]), other = countsOf(points.sets[1]);
+  const Eigen::VectorXd both = (one + other) / (one + other).sum();
+  return {{both.begin(), both.end()},
+          0.5 * (one / one.sum() - other / other.sum()).cwiseAbs().maxCoeff(),
+          points.sets[0].size() + points.sets[1].size()};
 }
 
 double largestDifference(const std::vector<double>& a, const std::vector<double>& b) {

@@ -1,6 +1,7 @@
 // How far crack vertices lie from where the cells' exact borders are.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "types/fragments.h"
@@ -25,6 +26,21 @@ std::vector<double> cellVolumes(const Fragments& fragments);
 /// Volumes of the cells within a convex body, over the body's, by clipping every tetrahedron to the body and
 /// to each cell. `planes`: n · x ≤ c as (n, c). Cost O(tets · sites).
 std::vector<double> convexReference(const Partition& cells, const std::vector<Vec4>& planes);
+
+/// Points in a body, in two sets that have nothing in common.
+struct SamplePoints {
+  std::array<std::vector<Vec3>, 2> sets;
+};
+/// In each cube of a grid over the surface's box one random point, kept where it is inside; and once more.
+SamplePoints pointsWithin(const TriMesh& surface, int cubesPerAxis);
+
+struct SampledVolumes {
+  std::vector<double> volumes;  ///< over the body's
+  double bar = 0;               ///< half the largest difference between the two sets
+  std::size_t points = 0;
+};
+/// The points' nearest sites in the embedding, interpolated linearly in the tetrahedron that holds the point.
+SampledVolumes sampledVolumes(const Partition& cells, const SamplePoints& points);
 
 /// Largest |a − b|.
 double largestDifference(const std::vector<double>& a, const std::vector<double>& b);
