@@ -154,7 +154,22 @@ TEST_F(Export, GammaOfZeroIsNoDegreeGiven) {
   EXPECT_NE(listener.infos.back().find("degree given"), std::string::npos) << listener.infos.back();
   json = nlohmann::json::parse(slurp(out("pieces.json")));
   EXPECT_TRUE(json["degree_given"]);
-  EXPECT_FALSE(json["below_threshold"]);
+  EXPECT_TRUE(json["gamma"].is_null()) << "cells of no γ";
+  EXPECT_TRUE(json["below_threshold"].is_null()) << "nothing was judged";
+  f.gamma = 5;
+  ASSERT_TRUE(run(f).ok());
+  json = nlohmann::json::parse(slurp(out("pieces.json")));
+  EXPECT_EQ(json["gamma"], 5);
+  EXPECT_TRUE(json["below_threshold"].is_null());
+}
+
+TEST_F(Export, MergedPartsAreCounted) {
+  Fragments f = test::slicedBox(2);
+  ASSERT_TRUE(run(f).ok());
+  EXPECT_EQ(nlohmann::json::parse(slurp(out("pieces.json")))["merged_parts"], 0);
+  f.counts.mergedParts = 3;
+  ASSERT_TRUE(run(f).ok());
+  EXPECT_EQ(nlohmann::json::parse(slurp(out("pieces.json")))["merged_parts"], 3);
 }
 
 TEST_F(Export, HowTheDegreeCameAboutIsPartOfTheHash) {
@@ -512,7 +527,9 @@ TEST_F(Export, WarnsOfWhatObjCannotHold) {
   box.colorSets.push_back({"paint", std::vector<Vec4>(box.cornerCount(), Vec4(1, 0.5, 0.25, 1))});
   ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
   ASSERT_EQ(listener.warnings.size(), 1u);
-  EXPECT_NE(listener.warnings[0].find("1 more UV set and 1 colour set are left out"), std::string::npos);
+  EXPECT_EQ(listener.warnings[0],
+            "OBJ holds the first UV set only, and no colours: 1 more UV set and 1 colour set are left out; "
+            "format ply keeps them");
   params.format = Params::Format::Ply;
   ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
   EXPECT_EQ(listener.warnings.size(), 1u);
@@ -521,6 +538,23 @@ TEST_F(Export, WarnsOfWhatObjCannotHold) {
                            "property int material_index\n", "comment material 0 paint\n"})
     EXPECT_NE(ply.find(line), std::string::npos) << line;
   EXPECT_FALSE(fs::exists(out("piece_0001_surface.obj")));
+}
+
+TEST_F(Export, WarnsOfNothingThatIsNotLost) {
+  TriMesh box = test::boxMesh(Vec3::Zero(), Vec3(2, 1, 1));
+  ASSERT_EQ(box.uvSets.size(), 1u);
+  ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
+  EXPECT_TRUE(listener.warnings.empty());
+  TriMesh coloured = box;
+  coloured.uvSets.clear();
+  coloured.colorSets.push_back({"paint", std::vector<Vec4>(box.cornerCount(), Vec4(1, 0.5, 0.25, 1))});
+  ASSERT_TRUE(run(test::slices(coloured, {1.1})).ok());
+  box.uvSets.resize(3, box.uvSets.front());
+  ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
+  EXPECT_EQ(listener.warnings,
+            (std::vector<std::string>{
+                "OBJ holds no colours: 1 colour set is left out; format ply keeps it",
+                "OBJ holds the first UV set only: 2 more UV sets are left out; format ply keeps them"}));
 }
 
 TEST_F(Export, PlyHoldsWhatItsHeaderSays) {
