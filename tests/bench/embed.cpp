@@ -1,13 +1,14 @@
 // The metric: how far distances are from the lengths of shortest ways inside, what that costs, and where the
 // time goes.
 //
-//   bench_embed [--part geodesics|models]… [--out DIRECTORY] [--results FILE.md]
+//   bench_embed [--part geodesics|spectrum|models|steps]… [--out DIRECTORY] [--results FILE.md]
 //
 // geodesics  bodies whose shortest ways are known exactly (L, U, ring, spiral): straight distances, both
-// filters and
-//            sources, over the number of modes; a plot of error over time
+//            filters and sources, over the number of modes; a plot of error over time
+// spectrum   horse and bunny: distances with some modes against those with all (embed_spectrum.cpp)
 // models     horse with 74 modes and bunny with 147: every source and extension, against paths through the
 //            tetrahedra
+// steps      the same models: assembling, factoring, eigenproblem, extension, unfolding, each on its own
 // Error is stress: root mean square error of distances over that of lengths, after the best scaling. Times
 // are medians of 3. Writes CSV, SVG and Markdown into the directory (default build/bench_embed), and the
 // tables into sections of FILE.md. Other arguments are Google Benchmark's.
@@ -20,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/embed_parts.h"
 #include "bench/marks.h"
 #include "bench/measured_table.h"
 #include "bench/parts.h"
@@ -240,5 +242,5 @@ void models(const Options& options, std::string& report) {
 int main(int argc, char** argv) {
   using namespace sherd::bench;
   return runParts(argc, argv, "bench_embed", SHERD_BINARY_DIR, {}, {},
-                  {{"geodesics", geodesics}, {"models", models}});
+                  {{"geodesics", geodesics}, {"spectrum", spectrum}, {"models", models}, {"steps", steps}});
 }

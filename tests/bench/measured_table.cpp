@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <map>
 
 namespace sherd::bench {
@@ -41,6 +43,16 @@ void runMeasured() {
 
 double medianOf(const std::string& name) { return medians()[name].real; }
 double processorMedianOf(const std::string& name) { return medians()[name].processor; }
+
+double leastProcessorMs(int runs, const std::function<void()>& work) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < runs; ++k) {
+    const std::clock_t start = std::clock();
+    work();
+    least = std::min(least, 1000 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+  }
+  return least;
+}
 
 std::string number(double value) {
   if (!std::isfinite(value)) return "";

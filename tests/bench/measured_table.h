@@ -52,6 +52,9 @@ double medianOf(const std::string& name);
 /// ms of processor time, of all threads together.
 double processorMedianOf(const std::string& name);
 
+/// ms of processor time, of all threads together: the least of so many runs.
+double leastProcessorMs(int runs, const std::function<void()>& work);
+
 std::string number(double value);      ///< three digits that count
 std::string scientific(double value);  ///< 1.2e-09
 std::string count(std::size_t value);

@@ -24,8 +24,8 @@ struct Axis {
   double share(double v) const { return ((isLogarithmic ? std::log10(v) : v) - low) / (high - low); }
 };
 
-/// Whole powers of ten around the values.
-Axis logarithmic(const std::vector<double>& values) {
+/// Whole powers of ten around the values. `room`: share of their range that is left free above them.
+Axis logarithmic(const std::vector<double>& values, double room) {
   Axis axis;
   double least = HUGE_VAL, most = 0;
   for (const double v : values)
@@ -35,6 +35,7 @@ Axis logarithmic(const std::vector<double>& values) {
   axis.high = std::max(axis.low + 1, std::ceil(std::log10(most)));
   for (double e = axis.low; e <= axis.high; ++e)
     axis.marks.emplace_back(std::pow(10, e), fmt::format("1e{}", e));
+  axis.high += room * (axis.high - axis.low);
   return axis;
 }
 
@@ -85,8 +86,9 @@ class Drawing {
     const bool isLinear = plot.scale == Plot::Scale::Linear;
     // The legend stands above all that is drawn.
     const double legend = kLegendLine * static_cast<double>(named) + 8;
-    x_ = !plot.categories.empty() ? categorical(plot) : isLinear ? linear(xs, 0) : logarithmic(xs);
-    y_ = isLinear ? linear(ys, legend / (h_ - legend)) : logarithmic(ys);
+    x_ = !plot.categories.empty() ? categorical(plot) : isLinear ? linear(xs, 0) : logarithmic(xs, 0);
+    const double room = legend / (h_ - legend);
+    y_ = isLinear ? linear(ys, room) : logarithmic(ys, room);
   }
 
   std::string svg() const {
