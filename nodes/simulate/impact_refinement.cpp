@@ -14,8 +14,8 @@ namespace {
 
 /// Per tetrahedron, the longest edge that its energy allows.
 std::vector<double> edgesForEnergy(const TetMesh& mesh, std::span<const double> energy, double largestShare) {
-  const double least = std::max(largestShare, kLargestMultiple / static_cast<double>(energy.size()));
-  const double largest = least * std::accumulate(energy.begin(), energy.end(), 0.0);
+  const double few = std::max(1.0, kShareTets / static_cast<double>(energy.size()));
+  const double largest = few * largestShare * std::accumulate(energy.begin(), energy.end(), 0.0);
   std::vector<double> wanted(energy.size(), std::numeric_limits<double>::infinity());
   for (std::size_t t = 0; t < energy.size(); ++t) {
     if (!(energy[t] > largest)) continue;

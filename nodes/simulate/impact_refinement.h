@@ -3,9 +3,9 @@
 // Two things make a strain energy too low in a cage of some thousand tetrahedra: a contact patch smaller than
 // their edges, whose dent they can't follow, and a lot of the energy in a few of them, as where a leg of one
 // tetrahedron's width bends. So edges are at most kPatchEdges radii long in a patch, and longer by a metre
-// per metre away from it; and no tetrahedron keeps more than kLargestShare of the energy found without (or
-// kLargestMultiple of the mean, where they are few), but is divided into about as many pieces as there are
-// such shares in it. What that costs is about what the cage itself costs, at any size of it.
+// per metre away from it; and no tetrahedron keeps more than kLargestShare of the energy found without (more
+// where there are fewer than kShareTets of them), but is divided into about as many pieces as there are such
+// shares in it. What that costs is about what the cage itself costs, at any size of it.
 #pragma once
 
 #include <memory>
@@ -22,7 +22,7 @@ namespace sherd {
 
 inline constexpr double kPatchEdges = 0.5;
 inline constexpr double kLargestShare = 0.0025;
-inline constexpr double kLargestMultiple = 12.5;
+inline constexpr double kShareTets = 5000;
 /// Edges are halved for energy's sake at most to this share of the tetrahedron's longest.
 inline constexpr double kShortestShare = 0.25;
 

@@ -30,7 +30,7 @@ struct SimulateParams : RigidParams {
   /// matter to a few per cent: in bending, linear ones are too stiff unless several lie across the thickness.
   ElementOrder elements = ElementOrder::Linear;
   /// Quadratic elements: smaller ones where the impact presses and where they would hold much of the energy
-  /// (simulate/impact_refinement.h). Linear ones are never refined.
+  /// (simulate/impact_refinement.h), at about the cage's cost again. Linear ones are never refined.
   bool refine = true;
 };
 

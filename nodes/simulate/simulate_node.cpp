@@ -123,7 +123,8 @@ void addElements(Builder& node) {
   node.boolean(
       "refine", &Params::refine,
       "quadratic elements: computes as if tetrahedra were smaller where the hit presses and where much "
-      "of the energy is, for energies within some 5 % at 5,000 tetrahedra; linear ones stay as they are");
+      "of the energy is, for energies within some 5 % at 5,000 tetrahedra and about as much time again; "
+      "linear ones stay as they are");
 }
 
 void addContact(Builder& node) {

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "bench/conforming.h"
+#include "bench/marks.h"
 #include "bench/measured_table.h"
 #include "bench/or_exit.h"
 #include "bench/plot.h"
@@ -181,14 +182,13 @@ class Comparison {
       impacts_.insert(impacts_.end(), drops.begin(), drops.end());
       Plot plot;
       plot.title = fmt::format("{}, patch × {:g}", model, patch);
-      plot.xLabel = "error of the energies of three drops, root mean square";
-      plot.yLabel = "six drops, cpu ms";
+      plot.xLabel = "six drops, cpu ms";
+      plot.yLabel = "error of the energies of three drops, root mean square";
       plots_.push_back(std::move(plot));
     }
     reference_ = referenceOf(fine, impacts_, places_);
     rows("ends at the surface", *fine, kChoices[2], reference_);
-    for (const Choice& choice : {kChoices[1], kChoices[0]})
-      rows("ends at the surface", *fine, choice, energiesOf(fine, choice, impacts_, places_));
+    rows("ends at the surface", *fine, kChoices[0], energiesOf(fine, kChoices[0], impacts_, places_));
   }
 
   void add(int asked, const Shared& cage, const Choice& choice) {
@@ -196,14 +196,15 @@ class Comparison {
     const std::vector<double> errors = rows("cage", *cage, choice, drops, asked);
     const bool isDefault = choice.order == SimulateParams{}.elements && asked == TetrahedralizeParams{}.tets;
     for (std::size_t p = 0; p < errors.size(); ++p) {
-      point(plots_[p], choice.name(), errors[p], drops.cpuMs);
-      if (p == 0 && isDefault) point(plots_[p], "default", errors[p], drops.cpuMs);
+      point(plots_[p], choice.name(), drops.cpuMs, errors[p]);
+      if (isDefault) marks_.push_back(crossAt("the default", drops.cpuMs, errors[p]));
     }
   }
 
   /// Over how far is refined, at the default patch.
   void addRefinements(const Shared& cage, Table& table, Plot& plot) {
     const Refined refined(cage);
+    Series mark;
     for (const RefinementParams& params : {RefinementParams{2, 1},
                                            {1, 1},
                                            {0.5, 1},
@@ -234,11 +235,16 @@ class Comparison {
       cells.push_back(fmt::format("{:.1f} %", 100 * worst));
       fmt::print("{}\n", fmt::join(cells, " "));
       table.row(std::move(cells));
-      point(plot, model_, std::sqrt(squares), ms);
-      if (isDefault) point(plot, "default", std::sqrt(squares), ms);
+      point(plot, model_, ms, std::sqrt(squares));
+      if (isDefault) mark = crossAt("the default, " + model_, ms, std::sqrt(squares));
     }
+    plot.series.push_back(std::move(mark));
   }
-  const std::vector<Plot>& plots() const { return plots_; }
+  std::vector<Plot> plots() const {
+    std::vector<Plot> marked = plots_;
+    for (std::size_t p = 0; p < marks_.size(); ++p) marked[p].series.push_back(marks_[p]);
+    return marked;
+  }
 
  private:
   /// One per patch; returns their root mean square errors.
@@ -283,7 +289,8 @@ class Comparison {
   Table& table_;
   std::vector<Impact> impacts_;  ///< kDrops per patch
   Drops reference_;
-  std::vector<Plot> plots_;  ///< one per patch
+  std::vector<Plot> plots_;    ///< one per patch
+  std::vector<Series> marks_;  ///< likewise
 };
 
 }  // namespace
@@ -295,8 +302,8 @@ void cages(const Options& options, std::string& report) {
                      "drop 1", "drop 2", "drop 3", "largest"});
   Plot refinementPlot;
   refinementPlot.title = "5,000 quadratic tetrahedra, refined";
-  refinementPlot.xLabel = "error of the energies of three drops, root mean square";
-  refinementPlot.yLabel = "refining a drop, cpu ms";
+  refinementPlot.xLabel = "refining a drop, cpu ms";
+  refinementPlot.yLabel = "error of the energies of three drops, root mean square";
   std::vector<Plot> plots;
   for (const Model& model : {Model{"horse", 0.03, 1}, Model{"bunny", 0.04, 6}}) {
     const std::string file = fmt::format(SHERD_SOURCE_DIR "/../shared/meshes/{}.obj", model.name);
@@ -314,7 +321,8 @@ void cages(const Options& options, std::string& report) {
       for (const Choice& choice : kChoices) comparison.add(tets, cage, choice);
       if (tets == TetrahedralizeParams{}.tets) comparison.addRefinements(cage, refinements, refinementPlot);
     }
-    plots.insert(plots.end(), comparison.plots().begin(), comparison.plots().end());
+    const std::vector<Plot> made = comparison.plots();
+    plots.insert(plots.end(), made.begin(), made.end());
   }
   table.write(options.out / "cages.csv");
   refinements.write(options.out / "refinements.csv");

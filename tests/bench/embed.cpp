@@ -7,7 +7,7 @@
 //            filters and sources, over the number of modes; a plot of error over time
 // spectrum   horse and bunny: distances with some modes against those with all (embed_spectrum.cpp)
 // models     horse with 74 modes and bunny with 147: every source and extension, against paths through the
-//            tetrahedra
+//            tetrahedra; a plot of both extensions
 // steps      the same models: assembling, factoring, eigenproblem, extension, unfolding, each on its own
 // Error is stress: root mean square error of distances over that of lengths, after the best scaling. Times
 // are medians of 3. Writes CSV, SVG and Markdown into the directory (default build/bench_embed), and the
@@ -15,6 +15,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -206,9 +207,24 @@ std::vector<P> choicesOf(int modes) {
   return all;
 }
 
+/// Each extension's points, over sources and filters; the default is crossed.
+void addToExtensions(Plot& plot, const P& p, double seconds, double error) {
+  const char* name = p.metric == P::Metric::Euclidean        ? "straight"
+                     : p.source == P::Source::Solid          ? "solid: none needed"
+                     : p.extension == P::Extension::Harmonic ? "harmonic"
+                                                             : "mean value coordinates";
+  auto found =
+      std::find_if(plot.series.begin(), plot.series.end(), [&](const Series& s) { return s.name == name; });
+  if (found == plot.series.end())
+    found = plot.series.insert(found, {.name = name, .x = {}, .y = {}, .style = Series::Style::Points});
+  found->x.push_back(seconds);
+  found->y.push_back(error);
+}
+
 void models(const Options& options, std::string& report) {
   Table table(
       {"model", "triangles", "nodes", "choice", "modes", "dimensions", "stress", "s", "goal s", "cpu s"});
+  std::vector<Plot> plots;
   for (const ModelCase& c : {ModelCase{"horse", "../shared/meshes/horse.obj", 5256, 74, 1, 5},
                              ModelCase{"bunny", "../shared/meshes/bunny.obj", 5301, 147, 1, 35}}) {
     const std::string file = std::string(SHERD_SOURCE_DIR "/") + c.file;
@@ -220,15 +236,24 @@ void models(const Options& options, std::string& report) {
         orExit(test::prepareCells(file, {.tets = c.tets, .counts = {7}}, test::defaultStore()));
     const Mesh mesh = prepared.embedding->tets;
     const std::vector<Pair> pairs = pathPairs(*mesh);
+    Plot plot{c.name, "cpu s", "stress", {}};
+    Series byDefault;
     for (const Measured& m : measured(c.name, mesh, choicesOf(c.modes))) {
       const bool fine = m.params.source == P::Source::Fine;
+      const double error = stress(*m.embedding, pairs), seconds = m.processorMs() / 1000;
       table.row({c.name, count(mesh->surface->triangles.size()), count(mesh->nodes.size()), nameOf(m.params),
                  count(static_cast<std::size_t>(c.modes)),
-                 count(static_cast<std::size_t>(m.embedding->coordinates.rows())),
-                 number(stress(*m.embedding, pairs)), number(m.ms() / 1000),
-                 number(fine ? c.fineGoal : c.goal), number(m.processorMs() / 1000)});
+                 count(static_cast<std::size_t>(m.embedding->coordinates.rows())), number(error),
+                 number(m.ms() / 1000), number(fine ? c.fineGoal : c.goal), number(seconds)});
+      addToExtensions(plot, m.params, seconds, error);
+      if (m.params.metric == P::Metric::Interior && m.params.source == P{}.source &&
+          m.params.filter == P{}.filter && m.params.extension == P{}.extension)
+        byDefault = crossAt("the default's choice, with so many modes", seconds, error);
     }
+    plot.series.push_back(std::move(byDefault));
+    plots.push_back(std::move(plot));
   }
+  writePlots(options.out / "extensions.svg", plots);
   table.write(options.out / "models.csv");
   report +=
       "### Models\n\nStress against paths through the tetrahedra (which are some percent longer than "
