@@ -8,6 +8,11 @@
 #include "types/scalar_grid.h"
 #include "types/tri_mesh.h"
 
+// Instantiated once, in scalar_grid_vdb.cpp. Otherwise each file that makes a grid would compile all that the
+// virtual functions of grids and trees call, which takes longer than the rest of the file.
+extern template class openvdb::tree::Tree<openvdb::FloatTree::RootNodeType>;
+extern template class openvdb::Grid<openvdb::FloatTree>;
+
 namespace sherd {
 
 struct ScalarGrid::Impl {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <memory>
 #include <string>
@@ -11,6 +10,7 @@
 #include "plugin/loader.h"
 #include "runtime/made_up.h"
 #include "support/contract.h"
+#include "types/scalar_grid_vdb.h"
 
 namespace sherd::test {
 

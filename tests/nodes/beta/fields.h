@@ -9,6 +9,10 @@
 #include "base/rng.h"
 #include "types/scalar_grid_vdb.h"
 
+// OpenVDB's library has what the virtual functions of its own types of grids call.
+extern template class openvdb::tree::Tree<openvdb::DoubleTree::RootNodeType>;
+extern template class openvdb::Grid<openvdb::DoubleTree>;
+
 namespace sherd::test {
 
 inline double sampleAt(const ScalarGrid& grid, const Vec3& p) {

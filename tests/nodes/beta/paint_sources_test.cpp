@@ -9,13 +9,13 @@ namespace {
 using namespace test;
 using Params = PaintBetaParams;
 
-ScalarGrid painted(const Params& params, const PaintBetaInputs& inputs) {
+ScalarGrid paintedFrom(const Params& params, const PaintBetaInputs& inputs) {
   const auto result = paintBeta(inputs, params, {});
   EXPECT_TRUE(result.ok()) << errorOf(result);
   return result.ok() ? *result : ScalarGrid::constant(-999);
 }
 
-std::string errorOf(const Params& params, const PaintBetaInputs& inputs) {
+std::string errorFor(const Params& params, const PaintBetaInputs& inputs) {
   return test::errorOf(paintBeta(inputs, params, {}));
 }
 
@@ -51,7 +51,7 @@ TEST(PaintColors, SpreadFromTheClosestPointThroughTheBand) {
   for (const auto& [channel, axis] :
        {std::pair(ColorChannel::Red, 0), {ColorChannel::Green, 1}, {ColorChannel::Blue, 2}}) {
     params.channel = channel;
-    const ScalarGrid grid = painted(params, {nullptr, nullptr, &mesh});
+    const ScalarGrid grid = paintedFrom(params, {nullptr, nullptr, &mesh});
     std::size_t inBand = 0;
     for (auto v = voxelsOf(grid).cbeginValueOn(); v; ++v) {
       const openvdb::Vec3d w = voxelsOf(grid).indexToWorld(v.getCoord());
@@ -77,11 +77,11 @@ TEST(PaintColors, TheFirstSetTheAlphaAndWhatLiesBeyondOne) {
   TriMesh mesh = coloredBox();
   Params params = colorParams();
   params.channel = ColorChannel::Alpha;
-  EXPECT_NEAR(sampleAt(painted(params, {nullptr, nullptr, &mesh}), Vec3(0.5, 0, 0)), 2, 1e-6);
+  EXPECT_NEAR(sampleAt(paintedFrom(params, {nullptr, nullptr, &mesh}), Vec3(0.5, 0, 0)), 2, 1e-6);
   params.colorSet.clear();
-  EXPECT_EQ(sampleAt(painted(params, {nullptr, nullptr, &mesh}), Vec3(0.5, 0, 0)), 1);
+  EXPECT_EQ(sampleAt(paintedFrom(params, {nullptr, nullptr, &mesh}), Vec3(0.5, 0, 0)), 1);
   for (Vec4& c : mesh.colorSets[0].rgba) c.setConstant(7);
-  EXPECT_EQ(sampleAt(painted(params, {nullptr, nullptr, &mesh}), Vec3(0.5, 0, 0)), 3);
+  EXPECT_EQ(sampleAt(paintedFrom(params, {nullptr, nullptr, &mesh}), Vec3(0.5, 0, 0)), 3);
 }
 
 TEST(PaintColors, FlatTrianglesAreNoTrouble) {
@@ -89,19 +89,19 @@ TEST(PaintColors, FlatTrianglesAreNoTrouble) {
   mesh.triangles.push_back({0, 0, 0});
   mesh.triangles.push_back({0, 1, 0});
   for (auto& set : mesh.colorSets) set.rgba.resize(mesh.cornerCount(), Vec4::Constant(0.5));
-  painted(colorParams(), {nullptr, nullptr, &mesh});
+  paintedFrom(colorParams(), {nullptr, nullptr, &mesh});
 }
 
 TEST(PaintColors, WhatIsMissingIsNamed) {
   TriMesh mesh = coloredBox();
   Params params = colorParams();
-  EXPECT_TRUE(says(errorOf(params, {}), "mesh: colours come from a mesh, and none is wired"));
+  EXPECT_TRUE(says(errorFor(params, {}), "mesh: colours come from a mesh, and none is wired"));
   params.colorSet = "Cd";
-  EXPECT_TRUE(says(errorOf(params, {nullptr, nullptr, &mesh}),
+  EXPECT_TRUE(says(errorFor(params, {nullptr, nullptr, &mesh}),
                    "color_set: the mesh has no colours named 'Cd'; it has 'flat', 'place'"));
   mesh.colorSets.clear();
   EXPECT_TRUE(
-      says(errorOf(params, {nullptr, nullptr, &mesh}), "mesh: the mesh 'box.ply' has no vertex colours"));
+      says(errorFor(params, {nullptr, nullptr, &mesh}), "mesh: the mesh 'box.ply' has no vertex colours"));
 }
 
 TEST(PaintNoise, LiesBetweenLowAndHighInTheSolidAndIsTheSameOnAnyLattice) {
@@ -113,9 +113,9 @@ TEST(PaintNoise, LiesBetweenLowAndHighInTheSolidAndIsTheSameOnAnyLattice) {
   params.high = 4;
   params.noiseSize = 0.2;
   params.voxel = 0.02;
-  const ScalarGrid coarse = painted(params, {nullptr, nullptr, &mesh});
+  const ScalarGrid coarse = paintedFrom(params, {nullptr, nullptr, &mesh});
   params.voxel = 0.01;
-  const ScalarGrid fine = painted(params, {nullptr, nullptr, &mesh});
+  const ScalarGrid fine = paintedFrom(params, {nullptr, nullptr, &mesh});
   double low = 9, high = 0;
   for (int i = -20; i <= 20; ++i)
     for (int j = -20; j <= 20; ++j) {
@@ -130,7 +130,7 @@ TEST(PaintNoise, LiesBetweenLowAndHighInTheSolidAndIsTheSameOnAnyLattice) {
   EXPECT_GT(high - low, 0.8);
   EXPECT_EQ(sampleAt(fine, Vec3::Constant(0.6)), 1) << "the background outside";
   params.seed = 2;
-  EXPECT_NE(digestOf(painted(params, {nullptr, nullptr, &mesh})), digestOf(fine));
+  EXPECT_NE(digestOf(paintedFrom(params, {nullptr, nullptr, &mesh})), digestOf(fine));
 }
 
 TEST(PaintNoise, WithoutAMeshLiesWhereTheGridIsPainted) {
@@ -139,10 +139,10 @@ TEST(PaintNoise, WithoutAMeshLiesWhereTheGridIsPainted) {
   const ScalarGrid grid = scalarGridOf(start, "beta", {});
   Params params;
   params.source = PaintSource::Noise;
-  EXPECT_TRUE(voxelsOf(painted(params, {&grid, nullptr, nullptr})).tree().hasSameTopology(start->tree()));
-  EXPECT_TRUE(says(errorOf(params, {}), "mesh: there is nothing that noise could lie in"));
+  EXPECT_TRUE(voxelsOf(paintedFrom(params, {&grid, nullptr, nullptr})).tree().hasSameTopology(start->tree()));
+  EXPECT_TRUE(says(errorFor(params, {}), "mesh: there is nothing that noise could lie in"));
   const TriMesh empty;
-  EXPECT_TRUE(says(errorOf(params, {nullptr, nullptr, &empty}), "mesh: there is nothing"));
+  EXPECT_TRUE(says(errorFor(params, {nullptr, nullptr, &empty}), "mesh: there is nothing"));
 }
 
 class Combined : public testing::TestWithParam<Blend> {};
@@ -156,7 +156,7 @@ TEST_P(Combined, OnOneLatticeVoxelByVoxel) {
   const ScalarGrid grid = scalarGridOf(a->deepCopy(), "a", {}), other = scalarGridOf(b->deepCopy(), "b", {});
   Params params;
   params.blend = GetParam();
-  const ScalarGrid result = painted(params, {&grid, &other, nullptr});
+  const ScalarGrid result = paintedFrom(params, {&grid, &other, nullptr});
   EXPECT_EQ(result.name(), "a");
   for (int i = -2; i < 50; ++i)
     for (int j = -2; j < 50; ++j)
@@ -185,7 +185,7 @@ TEST(Combine, OnAnotherLatticeLinearFieldsAreExact) {
   const ScalarGrid grid = scalarGridOf(start, "a", {}), other = scalarGridOf(linear, "b", frame);
   Params params;
   params.blend = Blend::Replace;
-  const ScalarGrid result = painted(params, {&grid, &other, nullptr});
+  const ScalarGrid result = paintedFrom(params, {&grid, &other, nullptr});
   std::size_t looked = 0;
   for (auto v = voxelsOf(result).cbeginValueOn(); v; ++v) {
     const openvdb::Vec3d w = voxelsOf(result).indexToWorld(v.getCoord());
@@ -204,7 +204,7 @@ TEST(Combine, WithoutAGridItHasTheLatticeOfTheOther) {
   const ScalarGrid other = scalarGridOf(b->deepCopy(), "b", {0.01, FileFrame::Up::Z});
   Params params;
   params.background = 2;
-  const ScalarGrid result = painted(params, {nullptr, &other, nullptr});
+  const ScalarGrid result = paintedFrom(params, {nullptr, &other, nullptr});
   EXPECT_EQ(voxelsOf(result).transform(), b->transform());
   EXPECT_EQ(voxelsOf(result).background(), 6);
   EXPECT_TRUE(voxelsOf(result).tree().hasSameTopology(b->tree()));
@@ -216,7 +216,7 @@ TEST(Smooth, AConstantStaysAndADabSpreadsByItsVariance) {
   params.voxel = 0.02;
   params.strokes = {{{{0, 0, 0}}, 0.021, 0, 1, Blend::Replace}};  // seven voxels
   params.smooth = 0.05;
-  const ScalarGrid grid = painted(params, {});
+  const ScalarGrid grid = paintedFrom(params, {});
   double sum = 0, second = 0;
   for (auto v = voxelsOf(grid).cbeginValueOn(); v; ++v) {
     const double x = 0.02 * v.getCoord().x();
@@ -229,12 +229,12 @@ TEST(Smooth, AConstantStaysAndADabSpreadsByItsVariance) {
   params.smooth = 0.01;
   params.background = 4;
   params.strokes = {{{{0, 0, 0}}, 0.5, 0, 1, Blend::Replace}};
-  const ScalarGrid ball = painted(params, {});
+  const ScalarGrid ball = paintedFrom(params, {});
   EXPECT_EQ(sampleAt(ball, Vec3::Constant(0.01)), 1) << "to the last bit";
   EXPECT_NEAR(sampleAt(ball, Vec3(0.49, 0, 0)), 2.5, 0.2);
   EXPECT_EQ(sampleAt(ball, Vec3::Constant(1)), 4);
   params.smooth = 10;
-  EXPECT_TRUE(says(errorOf(params, {}), "smooth: smoothing over 10 m is 500 voxels wide"));
+  EXPECT_TRUE(says(errorFor(params, {}), "smooth: smoothing over 10 m is 500 voxels wide"));
 }
 
 TEST(Threshold, SplitsValuesAndTheBackground) {
@@ -244,7 +244,7 @@ TEST(Threshold, SplitsValuesAndTheBackground) {
   params.threshold = 3;
   params.low = 0.25;
   params.high = 8;
-  const ScalarGrid grid = painted(params, {});
+  const ScalarGrid grid = paintedFrom(params, {});
   EXPECT_EQ(sampleAt(grid, Vec3::Zero()), 8);
   EXPECT_EQ(sampleAt(grid, Vec3(0.18, 0, 0)), 0.25);
   EXPECT_EQ(sampleAt(grid, Vec3(5, 0, 0)), 0.25);

@@ -1,7 +1,6 @@
 #include "beta/read_vdb.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -10,21 +9,29 @@
 #include <iterator>
 #include <limits>
 
-#include "base/parallel.h"
-#include "base/rng.h"
+#include "nodes/beta/fields.h"
 #include "support/sanitizers.h"
-#include "types/scalar_grid_vdb.h"
 
 namespace sherd {
 namespace {
 
 namespace fs = std::filesystem;
+using test::digestOf;
+using test::sampleAt;
 
 template <class Grid = openvdb::FloatGrid>
 typename Grid::Ptr makeGrid(const char* name, double background, double voxel = 0.1) {
   auto grid = Grid::create(static_cast<typename Grid::ValueType>(background));
   grid->setName(name);
   grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel));
+  return grid;
+}
+
+/// Without a voxel, of a type that OpenVDB registers.
+template <class Grid>
+openvdb::GridBase::Ptr emptyGrid(const char* name) {
+  auto grid = openvdb::GridBase::createGrid(Grid::gridType());
+  grid->setName(name);
   return grid;
 }
 
@@ -38,18 +45,6 @@ void fillLinear(Grid& grid, int n) {
         const openvdb::Vec3d p = grid.indexToWorld(openvdb::Coord(i, j, k));
         accessor.setValue({i, j, k}, static_cast<typename Grid::ValueType>(p.x() + 2 * p.y() + 3 * p.z()));
       }
-}
-
-double sampleAt(const ScalarGrid& grid, const Vec3& p) {
-  double value = 0;
-  grid.sample({&p, 1}, {&value, 1});
-  return value;
-}
-
-Digest contentOf(const ScalarGrid& grid) {
-  Hasher hasher;
-  hashValue(hasher, grid);
-  return hasher.digest();
 }
 
 class ReadVdb : public testing::Test {
@@ -106,7 +101,7 @@ TEST_F(ReadVdb, TruncatedFilesAreErrors) {
 }
 
 TEST_F(ReadVdb, ListsGridsWhereNoneFits) {
-  write({makeGrid<openvdb::Vec3SGrid>("velocity", 0), makeGrid<openvdb::Int32Grid>("ids", 0)});
+  write({emptyGrid<openvdb::Vec3SGrid>("velocity"), emptyGrid<openvdb::Int32Grid>("ids")});
   const std::string text = errorText();
   EXPECT_NE(text.find("no grid of floats"), std::string::npos) << text;
   EXPECT_NE(text.find("'ids' (int32)"), std::string::npos) << text;
@@ -152,15 +147,15 @@ TEST_F(ReadVdb, NothingPaintedIsConstant) {
   EXPECT_EQ(sampleAt(*result, Vec3(0.1, 0.2, 0.3)), 2.5);
   EXPECT_EQ(result->name(), "beta");
   const auto other = makeGrid("beta", 2.5);
-  EXPECT_EQ(contentOf(*result), contentOf(scalarGridOf(other, "beta", FileFrame{})));
-  EXPECT_NE(contentOf(*result), contentOf(scalarGridOf(other, "toughness", FileFrame{})));
-  EXPECT_NE(contentOf(*result), contentOf(scalarGridOf(makeGrid("beta", 2), "beta", FileFrame{})));
+  EXPECT_EQ(digestOf(*result), digestOf(scalarGridOf(other, "beta", FileFrame{})));
+  EXPECT_NE(digestOf(*result), digestOf(scalarGridOf(other, "toughness", FileFrame{})));
+  EXPECT_NE(digestOf(*result), digestOf(scalarGridOf(makeGrid("beta", 2), "beta", FileFrame{})));
 }
 
 TEST_F(ReadVdb, TakesTheFirstFloatGridAndSaysSo) {
   const auto first = makeGrid("a", 1), second = makeGrid("b", 2);
   second->tree().setValue({0, 0, 0}, 7);
-  write({second, makeGrid<openvdb::Int32Grid>("0", 0), first});
+  write({second, emptyGrid<openvdb::Int32Grid>("0"), first});
   auto result = read();
   ASSERT_TRUE(result.ok());
   EXPECT_EQ(result->name(), "a");
@@ -229,7 +224,7 @@ TEST_F(ReadVdb, DigestFollowsValuesTransformAndFrame) {
     params.unit = unit;
     const auto result = read();
     ASSERT_TRUE(result.ok());
-    digests.push_back(contentOf(*result));
+    digests.push_back(digestOf(*result));
   };
   add(1, 0.1, 2, 1);
   add(1, 0.1, 2, 1);

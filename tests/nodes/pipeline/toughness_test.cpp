@@ -1,6 +1,5 @@
 // An artist's β grid, from the file to the cells.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <filesystem>
 
@@ -9,6 +8,7 @@
 #include "embed/embed.h"
 #include "predict_degree/predict_degree.h"
 #include "support/tet_families.h"
+#include "types/scalar_grid_vdb.h"
 #include "weights/weights.h"
 
 namespace sherd {
