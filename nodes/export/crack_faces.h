@@ -1,6 +1,7 @@
 // How crack faces are to be drawn, as exporters need it.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "base/exec.h"
@@ -43,6 +44,15 @@ inline Index outerMaterial(const TriMesh& source, const Piece& piece, std::size_
 /// What faces are made of where the artist named nothing, and what crack faces are made of.
 inline constexpr const char* kOutside = "outside";
 inline constexpr const char* kInside = "inside";
+/// Linear; rough surfaces that are no metal. Also of the artist's materials that are no more than names.
+inline constexpr std::array<float, 3> kOutsideColour{0.8f, 0.8f, 0.8f}, kInsideColour{0.55f, 0.5f, 0.45f};
+inline constexpr double kPlainRoughness = 0.9;
+
+/// Has material `m` of the source this look because it is ours: `inside` of a piece, from an earlier
+/// fracture?
+inline bool isOldInside(const TriMesh& source, std::size_t m) {
+  return !source.piece.empty() && source.materials[m] == kInside;
+}
 
 /// Warns where a material of the artist's has a name that would be taken for ours. A piece that is broken
 /// again has ours already: its old crack faces and its new ones are of the same material.

@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/parallel.h"
+#include "export/material_files.h"
 #include "export/owned_files.h"
 #include "export/piece_files.h"
 #include "export/pieces_json.h"
@@ -103,7 +104,12 @@ std::vector<Outcome> writePieces(const Content& content, Params::Format format, 
 }
 
 void warnOfLosses(const TriMesh& source, const Params& params, const Exec& exec) {
-  if (params.format != Params::Format::Obj) return;
+  if (params.format != Params::Format::Obj) {
+    if (source.looks)
+      exec.info(
+          "PLY holds the names of materials only; colours and textures stay behind (format obj keeps them)");
+    return;
+  }
   const std::size_t uvs = source.uvSets.size() > 1 ? source.uvSets.size() - 1 : 0;
   const std::size_t colours = source.colorSets.size();
   if (uvs + colours == 0) return;
@@ -140,11 +146,12 @@ void sayOutcome(const Fragments& f, const std::string& directory, const ExportRe
 /// What is going to be written, the description last.
 struct Plan {
   std::vector<Job> jobs;
-  std::vector<std::string> names;  ///< one per job, and the description's
+  std::vector<std::string> names;  ///< one per job, one per file of materials, and the description's
   std::vector<PieceFileNames> pieceFiles;
+  std::vector<MaterialFile> materials;
 };
 
-Plan plan(const Fragments& f, const Params& params) {
+Plan plan(const Fragments& f, const Params& params, const Exec& exec) {
   const char* extension = params.format == Params::Format::Obj ? ".obj" : ".ply";
   Plan plan;
   plan.pieceFiles.resize(f.pieces.size());
@@ -155,13 +162,15 @@ Plan plan(const Fragments& f, const Params& params) {
     plan.jobs.push_back({p, true});
     plan.names.push_back(plan.pieceFiles[p].crack = f.pieces[p].name + "_crack" + extension);
   }
+  if (params.format == Params::Format::Obj) plan.materials = materialFiles(*f.tets->surface, exec);
+  for (const MaterialFile& file : plan.materials) plan.names.push_back(file.name);
   plan.names.push_back(kDescription);
   return plan;
 }
 
 Result<ExportReport> writeInto(const Content& content, const Params& params, const Exec& exec) {
   const Fragments& f = content.f;
-  const auto [jobs, names, pieceFiles] = plan(f, params);
+  const auto [jobs, names, pieceFiles, materials] = plan(f, params, exec);
   SHERD_CHECK(makeDirectory(params.directory));
   SHERD_ASSIGN(const OwnedFiles files, OwnedFiles::open(params.directory, names));
   warnOfLosses(*f.tets->surface, params, exec);
@@ -171,6 +180,7 @@ Result<ExportReport> writeInto(const Content& content, const Params& params, con
   Writer writer(files);
   std::vector<Outcome> outcomes = writePieces(content, params.format, jobs, names, writer, exec);
   if (exec.cancelled()) return cancelledError();
+  for (const MaterialFile& file : materials) outcomes.push_back(writer.put(file.name, file.bytes()));
   for (const Outcome& outcome : outcomes)
     if (outcome.error) return *outcome.error;
   outcomes.push_back(writer.put(kDescription, piecesJson(f, content.bonds, pieceFiles)));

@@ -7,10 +7,15 @@
 //                           source triangle's corners
 //   piece_0001_crack.obj    its crack faces, material `inside`, one group per neighbour, with normals and UVs
 //                           (geometry/crack_attributes.h); none where it has no crack
+//   pieces.mtl              where the file that the mesh came from says what its materials look like: that,
+//   and
+//                           `outside` and `inside`
+//   pieces_texture_01_….png the pictures that it names, byte for byte (material_files.h)
 //   pieces.json             N, E_D, γ; per piece mass, volume, centre of mass, inertia, neighbours; bonds
 //                           (pieces_json.h)
 //   sherd_manifest.json     which of the directory's files are ours, with digests (owned_files.h)
-// or the same with PLY (binary, double), which holds all UV sets and colours.
+// or the same with PLY (binary, double), which holds all UV sets and colours, but of
+// materials the names only.
 //
 // The two files of a piece together are closed, and a vertex that several files share is the same three
 // doubles in all of them: coordinates are written with as many digits as bring back the very double (at most

@@ -12,14 +12,16 @@ NodeType exportCrackSurfaceNode() {
              "removed; nothing else in the directory is touched.")
       .input<Fragments>("pieces", "the pieces to write")
       .outputDirectory("directory", &Params::directory, "where the files go; created where it is missing")
-      .choice("format", &Params::format, {{"obj", Params::Format::Obj}, {"ply", Params::Format::Ply}},
-              "obj (text; first UV set) or ply (binary, double; all UV sets and colours)")
+      .choice(
+          "format", &Params::format, {{"obj", Params::Format::Obj}, {"ply", Params::Format::Ply}},
+          "obj (text; first UV set; pieces.mtl and its textures, where the mesh's materials are more than "
+          "names) or ply (binary, double; all UV sets and colours; materials' names only)")
       .choice("crack_normals", &Params::crackNormals,
               {{"smooth", CrackNormals::Smooth}, {"flat", CrackNormals::Flat}}, kCrackNormalsHelp)
       .number("texture_density", &Params::textureDensity,
               {.unit = "1/m", .min = 0, .openMin = true, .help = kTextureDensityHelp})
       .output<std::string>("manifest", "path of pieces.json")
-      .implementation(3)
+      .implementation(4)
       .writesFiles()
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         SHERD_ASSIGN(ExportReport report, exportCrackSurface(*io.in<Fragments>("pieces"), params, io.exec()));

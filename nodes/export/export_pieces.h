@@ -11,6 +11,10 @@
 // vertices are relative to it. `extras` of the node: cell, mass, volume, centre_of_mass, inertia, neighbours
 // (name, contact_area, centroid, normal towards it), parent; SI units.
 //
+// Materials look as in the file that the mesh came from: factors, textures (PNG and JPEG, which the file
+// holds once each, byte for byte), opacity. Of a material that is no more than a name nothing is known: it is
+// grey.
+//
 // A mesh has one primitive for each material: the artist's own, `outside` for faces that have none, `inside`
 // for crack faces, those of earlier fractures included. Two pieces hold the same material, not two of the
 // same name.
@@ -26,7 +30,8 @@
 //
 // Coordinates are floats. A vertex is off by at most 2⁻²⁴ of its distance from its piece's centre (along each
 // axis), and since the node's place is a float already, readers add nothing to that: twins agree to 10⁻⁷ of
-// the size.
+// the size. Nearly all of them hold places as floats: written as a double, a place far from the origin would
+// be rounded by them, each piece by another amount, and the pieces would gape. The very centre is in `extras`.
 #pragma once
 
 #include <string>

@@ -8,7 +8,8 @@ NodeType exportPiecesNode() {
   return NodeBuilder<Params>("ExportPieces", 1,
                              "Writes all pieces as one GLB file, pieces.glb: an object for each with its "
                              "pivot at the centre of "
-                             "mass, in metres, y up, with the artist's materials, normals, UVs and colours "
+                             "mass, in metres, y up, with the artist's materials and their textures, "
+                             "normals, UVs and colours "
                              "outside and generated "
                              "ones inside; masses, volumes and neighbours as custom properties. Beside it "
                              "sherd_pieces_manifest.json, which tells the next run that the file is ours; "
@@ -20,7 +21,7 @@ NodeType exportPiecesNode() {
       .number("texture_density", &Params::textureDensity,
               {.unit = "1/m", .min = 0, .openMin = true, .help = kTextureDensityHelp})
       .output<std::string>("file", "path of pieces.glb")
-      .implementation(2)
+      .implementation(3)
       .writesFiles()
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         SHERD_ASSIGN(ExportPiecesReport report, exportPieces(*io.in<Fragments>("pieces"), params, io.exec()));

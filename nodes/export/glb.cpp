@@ -13,6 +13,75 @@ using Json = nlohmann::ordered_json;
 constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 
+/// What materials use: textures, samplers and images, each once.
+class TextureTable {
+ public:
+  explicit TextureTable(std::shared_ptr<const SurfaceLooks> looks) : looks_(std::move(looks)) {}
+
+  /// Adds `key` with its texture to a material; nothing where there is none.
+  void put(Json& owner, const char* key, const Texture& texture, const char* strength = nullptr) {
+    if (texture.image < 0 || !looks_) return;
+    Json use;
+    use["index"] = number(texture);
+    if (texture.uvSet > 0) use["texCoord"] = texture.uvSet;
+    if (strength != nullptr && (texture.strength < 1 || texture.strength > 1))
+      use[strength] = texture.strength;
+    owner[key] = std::move(use);
+  }
+
+  /// Images go behind `length` bytes of the buffer. Returns the new length.
+  std::size_t describe(Json& json, std::size_t length) const {
+    if (images_.empty()) return length;
+    for (const Index number : images_) {
+      const ImageFile& image = looks_->images[at(number)];
+      json["images"].push_back({{"name", image.name},
+                                {"mimeType", mimeTypeOf(image)},
+                                {"bufferView", json["bufferViews"].size()}});
+      json["bufferViews"].push_back(
+          {{"buffer", 0}, {"byteOffset", length}, {"byteLength", image.bytes.size()}});
+      length += padded(image.bytes.size());
+    }
+    if (!samplers_.empty()) json["samplers"] = samplers_;
+    json["textures"] = textures_;
+    return length;
+  }
+  void append(std::string& file) const {
+    for (const Index number : images_) {
+      const std::string& bytes = looks_->images[at(number)].bytes;
+      file += bytes;
+      file.append(padded(bytes.size()) - bytes.size(), '\0');
+    }
+  }
+
+ private:
+  static std::size_t padded(std::size_t bytes) { return (bytes + 3) / 4 * 4; }
+
+  /// Where it is found in `list`, to whose end it is added where it isn't there.
+  template <class List, class T>
+  static std::size_t placeOf(List& list, const T& item) {
+    const auto found = std::find(list.begin(), list.end(), item);
+    const auto place = static_cast<std::size_t>(found - list.begin());
+    if (found == list.end()) list.push_back(item);
+    return place;
+  }
+
+  std::size_t number(const Texture& texture) {
+    Json json;
+    if (texture.wrapU != Texture::Wrap::Repeat || texture.wrapV != Texture::Wrap::Repeat)
+      json["sampler"] =
+          placeOf(samplers_, Json{{"wrapS", modeOf(texture.wrapU)}, {"wrapT", modeOf(texture.wrapV)}});
+    json["source"] = placeOf(images_, texture.image);
+    return placeOf(textures_, json);
+  }
+  static int modeOf(Texture::Wrap wrap) {
+    return wrap == Texture::Wrap::Clamp ? 33071 : wrap == Texture::Wrap::Mirror ? 33648 : 10497;
+  }
+
+  std::shared_ptr<const SurfaceLooks> looks_;
+  std::vector<Index> images_;  ///< into the looks' images
+  std::vector<Json> textures_, samplers_;
+};
+
 /// Accessors of one type of element, one behind the other.
 class View {
  public:
@@ -52,7 +121,7 @@ class View {
 
 class Builder {
  public:
-  explicit Builder(const GlbScene& scene) {
+  explicit Builder(const GlbScene& scene) : textures_(scene.looks) {
     json_["asset"] = {{"version", "2.0"}, {"generator", "sherd"}};
     json_["scene"] = 0;
     Json roots = Json::array();
@@ -73,6 +142,7 @@ class Builder {
     }
     for (Json& accessor : json_["accessors"])
       accessor["bufferView"] = number[accessor["bufferView"].get<std::size_t>()];
+    length = textures_.describe(json_, length);
     json_["buffers"] = Json::array({{{"byteLength", length}}});
     return join(length);
   }
@@ -81,12 +151,35 @@ class Builder {
   enum Kind { Vectors2, Vectors3, Vectors4, Shorts, Ints };
 
   void addMaterial(const GlbMaterial& material) {
+    if (material.look) return addLook(material.name, *material.look);
     const auto& [r, g, b] = material.colour;
     json_["materials"].push_back({{"name", material.name},
                                   {"pbrMetallicRoughness",
                                    {{"baseColorFactor", Json::array({r, g, b, 1})},
                                     {"metallicFactor", 0},
                                     {"roughnessFactor", 0.9}}}});
+  }
+
+  void addLook(const std::string& name, const Look& look) {
+    Json json, surface;
+    surface["baseColorFactor"] = look.baseColour;
+    textures_.put(surface, "baseColorTexture", look.colourTexture);
+    surface["metallicFactor"] = look.metallic;
+    surface["roughnessFactor"] = look.roughness;
+    textures_.put(surface, "metallicRoughnessTexture", look.metallicRoughnessTexture);
+    json["name"] = name;
+    json["pbrMetallicRoughness"] = std::move(surface);
+    textures_.put(json, "normalTexture", look.normalTexture, "scale");
+    textures_.put(json, "occlusionTexture", look.occlusionTexture, "strength");
+    textures_.put(json, "emissiveTexture", look.emissiveTexture);
+    std::array<double, 3> emissive = look.emissive;
+    for (double& value : emissive) value = std::min(value, 1.0);
+    if (emissive != std::array<double, 3>{}) json["emissiveFactor"] = emissive;
+    if (look.alpha != Look::Alpha::Opaque)
+      json["alphaMode"] = look.alpha == Look::Alpha::Mask ? "MASK" : "BLEND";
+    if (look.alpha == Look::Alpha::Mask) json["alphaCutoff"] = look.alphaCutoff;
+    if (look.doubleSided) json["doubleSided"] = true;
+    json_["materials"].push_back(std::move(json));
   }
 
   void addNode(const GlbNode& node) {
@@ -162,10 +255,12 @@ class Builder {
     word(length);
     file.append("BIN\0", 4);
     for (const View& view : views_) file += view.bytes();
+    textures_.append(file);
     return file;
   }
 
   Json json_;
+  TextureTable textures_;
   std::array<View, 5> views_{View("VEC2", kFloat, 8, kArrayBuffer), View("VEC3", kFloat, 12, kArrayBuffer),
                              View("VEC4", kFloat, 16, kArrayBuffer),
                              View("SCALAR", kUnsignedShort, 2, kElementArrayBuffer),

@@ -4,10 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
+#include "types/surface_looks.h"
 #include "types/vec.h"
 
 namespace sherd {
@@ -36,17 +39,20 @@ struct GlbNode {
 
 struct GlbMaterial {
   std::string name;
-  Floats3 colour{};  ///< linear, of a rough surface that is no metal
+  Floats3 colour{};               ///< linear, of a rough surface that is no metal; where there is no look
+  std::optional<Look> look = {};  ///< its images are PNG or JPEG, its UV sets are there
 };
 
 struct GlbScene {
   std::string name;
   std::vector<GlbMaterial> materials;
   std::vector<GlbNode> nodes;
+  std::shared_ptr<const SurfaceLooks> looks;  ///< whose images the materials' textures are
 };
 
 /// The file's bytes. Accessors of one type of element share a buffer view; all are aligned to four bytes;
-/// indices have 16 bits where these are enough. Fails beyond 4 GiB, which the format's lengths can't tell.
+/// indices have 16 bits where these are enough. Images that materials use stand in the file once each, byte
+/// for byte. Fails beyond 4 GiB, which the format's lengths can't tell.
 Result<std::string> writeGlb(const GlbScene& scene);
 
 }  // namespace sherd

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/parallel.h"
 #include "export/float_rounding.h"
@@ -12,8 +13,6 @@
 
 namespace sherd {
 namespace {
-
-constexpr Floats3 kOutsideColour{0.8f, 0.8f, 0.8f}, kInsideColour{0.55f, 0.5f, 0.45f};
 
 /// Materials in use and their numbers in the file: the artist's, −1 for `outside`, −2 for `inside`, which is
 /// the same as that of the older crack faces of a piece.
@@ -35,9 +34,10 @@ struct Palette {
       }
     }
     for (std::size_t m = 0; m < used.size(); ++m) {
-      const bool isOurs = !source.piece.empty() && source.materials[m] == kInside;
+      const bool isOurs = isOldInside(source, m);
       if (!used[m] && !(isOurs && usesInside)) continue;
       add(static_cast<Index>(m), source.materials[m], isOurs ? kInsideColour : kOutsideColour);
+      if (const Look* look = lookOf(source.looks.get(), static_cast<Index>(m))) materials.back().look = *look;
       if (isOurs) number.try_emplace(inside, materials.size() - 1);
     }
     if (usesOutside) add(outside, kOutside, kOutsideColour);
@@ -118,17 +118,35 @@ struct PieceBuilder {
   PieceBuilder(const Fragments& fragments, const Piece& which)
       : f(fragments), piece(which), source(*f.tets->surface), pivot(roundedToFloat(piece.centreOfMass)) {}
 
+  /// Crack faces of an earlier fracture are white, and have no colours, as new ones: readers that tell
+  /// materials with colours from those without then make one of both.
+  bool areOldCracks(const std::vector<std::size_t>& triangles) const {
+    return std::all_of(triangles.begin(), triangles.end(), [&](std::size_t t) {
+      const Index material = outerMaterial(source, piece, t);
+      if (material < 0 || !isOldInside(source, at(material))) return false;
+      const std::size_t first = 3 * at(piece.surfaceSource[t]);
+      return std::all_of(source.colorSets.begin(), source.colorSets.end(), [&](const TriMesh::ColorSet& set) {
+        return std::all_of(set.rgba.begin() + static_cast<std::ptrdiff_t>(first),
+                           set.rgba.begin() + static_cast<std::ptrdiff_t>(first + 3),
+                           [](const Vec4& rgba) { return rgba == Vec4::Ones(); });
+      });
+    });
+  }
+
   /// The outer triangles of one material. False where something is too large for a float.
   bool addSurface(const std::vector<std::size_t>& triangles, const std::vector<Vec3>& normals,
                   std::size_t material, GlbNode& node) const {
-    Vertices vertices(!normals.empty(), source.uvSets.size(), source.colorSets.size(), triangles.size());
+    const bool hasColours = !areOldCracks(triangles);
+    Vertices vertices(!normals.empty(), source.uvSets.size(), hasColours ? source.colorSets.size() : 0,
+                      triangles.size());
     for (const std::size_t t : triangles)
       for (std::size_t c = 0; c < 3; ++c) {
         vertices.put(Vec3(f.positions[at(piece.surface[t][c])] - pivot));
         if (!normals.empty()) vertices.put(normals[3 * t + c]);
         for (const auto& set : source.uvSets) vertices.putUv(cornerAttribute(f, piece, t, c, set.uv));
-        for (const auto& set : source.colorSets)
-          vertices.put(Vec4(cornerAttribute(f, piece, t, c, set.rgba).cwiseMax(0.0).cwiseMin(1.0)));
+        if (hasColours)
+          for (const auto& set : source.colorSets)
+            vertices.put(Vec4(cornerAttribute(f, piece, t, c, set.rgba).cwiseMax(0.0).cwiseMin(1.0)));
         vertices.close();
       }
     if (!vertices.empty()) node.primitives.push_back(vertices.take(material));
@@ -163,6 +181,24 @@ struct PieceBuilder {
     return isFinite;
   }
 };
+
+/// Takes out what a GLB file cannot hold, with a warning for each.
+void dropTextures(GlbMaterial& material, const TriMesh& source, std::set<Index>& warned, const Exec& exec) {
+  if (!material.look) return;
+  forEachTexture(*material.look, [&](Texture& texture) {
+    if (texture.image < 0) return;
+    const ImageFile& image = source.looks->images[at(texture.image)];
+    const std::string type = mimeTypeOf(image);
+    const bool isHeld = type == "image/png" || type == "image/jpeg";
+    const bool hasUvs = at(texture.uvSet) < source.uvSets.size();
+    if (isHeld && hasUvs) return;
+    if (warned.insert(texture.image).second)
+      exec.warn(
+          "texture '" + image.name + "' of material '" + material.name + "' is left out: " +
+          (isHeld ? "the mesh lacks the UV set that it is laid by" : "GLB files hold PNG and JPEG only"));
+    texture = {};
+  });
+}
 
 void warnOfColours(const TriMesh& source, const Exec& exec) {
   for (const auto& set : source.colorSets)
@@ -199,6 +235,9 @@ Result<GlbScene> glbScene(const Fragments& f, const CrackAttributes& cracks, con
       return failure("coordinates or attributes of " + f.pieces[p].name + " are too large for GLB's floats",
                      "scale the mesh, or export by ExportCrackSurface, which writes doubles", "pieces");
   scene.materials = std::move(palette.materials);
+  scene.looks = f.tets->surface->looks;
+  std::set<Index> warned;
+  for (GlbMaterial& material : scene.materials) dropTextures(material, *f.tets->surface, warned, exec);
   return scene;
 }
 

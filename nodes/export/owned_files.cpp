@@ -48,11 +48,21 @@ Result<bool> removeFile(const std::string& path) {
   return true;
 }
 
+/// "pieces_texture_01_brick.png", in letters that are safe in any directory.
+bool isTexture(const std::string& name) {
+  const std::string prefix = "pieces_texture_";
+  return name.starts_with(prefix) && name.size() > prefix.size() &&
+         std::isdigit(static_cast<unsigned char>(name[prefix.size()])) &&
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '.' || c == '-'; });
+}
+
 }  // namespace
 
 bool OwnedFiles::canBeOurs(const std::string& name) {
   if (name == "proxies.json" || name == "proxies.obj") return true;
-  if (name == "pieces.json" || name == "pieces.glb") return true;
+  if (name == "pieces.json" || name == "pieces.glb" || name == "pieces.mtl") return true;
+  if (isTexture(name)) return true;
   const std::string prefix = "piece_";
   if (name.compare(0, prefix.size(), prefix) != 0) return false;
   // Pieces of pieces are piece_0003_0001 and so on.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "export/material_files.h"
 #include "export/piece_files.h"
 #include "export/row_table.h"
 #include "export/text_buffer.h"
@@ -33,15 +34,9 @@ class Lines {
 void head(TextBuffer& out, const Fragments& f, const std::string& object, const char* what) {
   out.reserve(256);
   out << "# sherd: " << what << ". Unit and axes are those of the source file; 1 unit is ";
-  out << f.tets->surface->frame.metresPerUnit << " m.\no " << object << '\n';
-}
-
-/// A name as OBJ can hold it: on one line, and not empty.
-std::string objName(const std::string& name) {
-  std::string clean = name;
-  for (char& c : clean)
-    if (static_cast<unsigned char>(c) < ' ') c = '_';
-  return clean.empty() ? "unnamed" : clean;
+  out << f.tets->surface->frame.metresPerUnit << " m.\n";
+  if (f.tets->surface->looks) out << "mtllib " << kMaterialLibrary << '\n';
+  out << "o " << object << '\n';
 }
 
 }  // namespace

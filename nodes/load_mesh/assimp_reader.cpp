@@ -18,6 +18,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "load_mesh/file_looks.h"
 #include "load_mesh/file_mesh.h"
 #include "load_mesh/polygon_fan.h"
 
@@ -81,7 +82,8 @@ struct Channels {
 
 class SceneReader {
  public:
-  explicit SceneReader(const aiScene& scene) : scene_(scene), channels_(scene) {
+  SceneReader(const aiScene& scene, const std::string& path, const Exec& exec)
+      : scene_(scene), channels_(scene), looks_(path, exec) {
     for (const std::string& name : channels_.uvNames) mesh().uvSets.push_back({name, {}});
     for (std::size_t k = 0; k < channels_.colors; ++k) {
       mesh().colorSets.push_back({k == 0 ? "color" : "color" + std::to_string(k), {}});
@@ -105,6 +107,7 @@ class SceneReader {
     if (mesh().triangles.empty()) {
       return failure("the file has no polygons", "export the model itself, as a polygon mesh");
     }
+    readLooks();
     dropUnnamedMaterial();
     finishNormals(mesh());
     SHERD_CHECK(unitAndUp());
@@ -195,13 +198,33 @@ class SceneReader {
     return entry->second;
   }
 
-  // assimp gives every mesh a material. Where it is the only one and assimp's own, the file has none.
+  void readLooks() {
+    std::vector<unsigned> indices(mesh().materials.size());
+    for (const auto& [index, number] : materialNumber_) indices[at(number)] = index;
+    for (std::size_t m = 0; m < indices.size(); ++m) {
+      if (mesh().materials[m] == AI_DEFAULT_MATERIAL_NAME) continue;
+      if (auto look = lookOf(scene_, indices[m], looks_)) looks_.set(m, std::move(*look));
+    }
+    mesh().looks = looks_.take();
+  }
+
+  // assimp gives every mesh a material. Where it is the only one and assimp's own, or has neither name nor
+  // colour, the file has none.
   void dropUnnamedMaterial() {
     if (mesh().materials.size() != 1) return;
     const std::string& name = mesh().materials[0];
-    if (!name.empty() && name != AI_DEFAULT_MATERIAL_NAME) return;
+    const Look* look = lookOf(mesh().looks.get(), 0);
+    if (look != nullptr && (!name.empty() || saysMuch(*look))) return;
     mesh().materials.clear();
     mesh().materialOf.clear();
+    mesh().looks = nullptr;
+  }
+
+  static bool saysMuch(const Look& look) {
+    const auto& [r, g, b, a] = look.baseColour;
+    bool much = r != g || g != b || a < 1;
+    forEachTexture(look, [&](const Texture& texture) { much = much || texture.image >= 0; });
+    return much;
   }
 
   Result<void> unitAndUp() {
@@ -246,12 +269,13 @@ class SceneReader {
   const aiScene& scene_;
   Channels channels_;
   std::unordered_map<unsigned, Index> materialNumber_;
+  LooksBuilder looks_;
   FileMesh file_;
 };
 
 }  // namespace
 
-Result<FileMesh> readWithAssimp(const std::string& path) {
+Result<FileMesh> readWithAssimp(const std::string& path, const Exec& exec) {
   try {
     Assimp::Importer importer;
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
@@ -263,7 +287,7 @@ Result<FileMesh> readWithAssimp(const std::string& path) {
     }
     if (scene->mRootNode == nullptr)
       return failure("the file has no scene", "export the model as a polygon mesh");
-    return SceneReader(*scene).read();
+    return SceneReader(*scene, path, exec).read();
   } catch (const std::exception& e) {
     return failure(std::string("the file can't be read: ") + e.what(), "it may be damaged; export it again");
   } catch (...) {

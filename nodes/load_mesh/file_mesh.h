@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/exec.h"
 #include "base/result.h"
@@ -15,8 +16,9 @@ struct FileMesh {
   /// Positions in the file's coordinates, one per vertex of the file; triangles by those; attributes per
   /// corner. Polygons come triangulated. `frame` and `source` are not set yet.
   TriMesh mesh;
-  std::optional<double> metresPerUnit;  ///< where the format says so
-  std::optional<FileFrame::Up> up;      ///< where the format says so
+  std::vector<std::string> materialLibraries;  ///< what follows `mtllib` in each of an OBJ file's lines
+  std::optional<double> metresPerUnit;         ///< where the format says so
+  std::optional<FileFrame::Up> up;             ///< where the format says so
 };
 
 // One reader per format that is read in full double precision. `content` is the whole file. Errors name the
@@ -28,7 +30,7 @@ Result<FileMesh> readStl(std::string_view content, const Exec& exec = {});
 Result<FileMesh> readOff(std::string_view content, const Exec& exec = {});
 
 /// glTF, GLB, FBX and whatever else assimp knows, through assimp (single precision), with node transforms
-/// applied.
-Result<FileMesh> readWithAssimp(const std::string& path);
+/// applied, and with the looks of its materials (load_mesh/file_looks.h).
+Result<FileMesh> readWithAssimp(const std::string& path, const Exec& exec = {});
 
 }  // namespace sherd

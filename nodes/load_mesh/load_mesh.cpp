@@ -13,6 +13,7 @@
 
 #include "geometry/inspect_surface.h"
 #include "geometry/weld.h"
+#include "load_mesh/file_looks.h"
 #include "load_mesh/file_mesh.h"
 #include "repair/repair.h"
 
@@ -68,9 +69,11 @@ Result<FileMesh> readAny(const std::string& file, const Exec& exec) {
                       : extension == ".stl" ? readStl
                       : extension == ".off" ? readOff
                                             : nullptr;
-  if (reader == nullptr) return readWithAssimp(file);
+  if (reader == nullptr) return readWithAssimp(file, exec);
   SHERD_ASSIGN(const std::string content, readContent(file));
-  return reader(content, exec);
+  SHERD_ASSIGN(FileMesh mesh, reader(content, exec));
+  if (!mesh.materialLibraries.empty()) readMaterialLibraries(mesh, file, exec);
+  return mesh;
 }
 
 /// Reads, and puts the file's name before what the reader complains of.

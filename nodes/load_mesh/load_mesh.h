@@ -2,12 +2,15 @@
 //
 // OBJ, PLY, STL and OFF are read in double precision by readers of our own; everything else (glTF, FBX, …) by
 // assimp, in the single precision that it has. Positions are frame.toMetres(position in the file): with y up
-// and 1 m per unit the very doubles of the file. Normals turn along; no other attribute is touched. Vertices
-// of identical position are joined, collapsed triangles and unused vertices left out (weld.h). What then
-// doesn't bound a solid is repaired or refused (repair.h).
+// and 1 m per unit the very doubles of the file. Normals turn along; no other attribute is touched.
+// Materials come with what they look like: from the file or, for OBJ, from the .mtl files that it names;
+// textures beside the file or in it (load_mesh/file_looks.h). What of that can't be had is a warning by name.
+// Vertices of identical position are joined, collapsed triangles and unused vertices left out (weld.h). What
+// then doesn't bound a solid is repaired or refused (repair.h).
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/exec.h"
 #include "base/result.h"
@@ -41,5 +44,9 @@ struct LoadMeshParams {
 /// could not be repaired. Cost O(file size + triangles · log triangles) for a sound surface, and that of
 /// repair.h for others.
 Result<TriMesh> loadMesh(const LoadMeshParams& params, const Exec& exec);
+
+/// The paths of all files beside a mesh file that loadMesh() may read with it, whether they are there or not:
+/// material libraries, textures and buffers of OBJ, glTF and GLB files. Never fails; reads the file.
+std::vector<std::string> filesReadWith(const std::string& meshFile);
 
 }  // namespace sherd

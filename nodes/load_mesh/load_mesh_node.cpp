@@ -1,9 +1,11 @@
+#include "graph/companion_files.h"
 #include "graph/node_type.h"
 #include "load_mesh/load_mesh.h"
 
 namespace sherd {
 
 NodeType loadMeshNode() {
+  for (const char* extension : {".obj", ".gltf", ".glb"}) setCompanionFiles(extension, filesReadWith);
   using Params = LoadMeshParams;
   return NodeBuilder<Params>("LoadMesh", 1,
                              "Reads a triangle mesh (OBJ, PLY, STL, OFF, glTF, FBX and others), turns it to "
@@ -28,7 +30,11 @@ NodeType loadMeshNode() {
               "strict: refuses it, naming each defect and its place")
       // Only where a level set is the last resort. As in Tetrahedralize, which measured it.
       .uninterruptible("OpenVDB's meshToVolume", 1120)
-      .output<TriMesh>("mesh", "the surface, facing outward, with its normals, UVs, colours and materials")
+      .output<TriMesh>(
+          "mesh",
+          "the surface, facing outward, with its normals, UVs, colours and materials; these with "
+          "their colours and textures, which glTF, FBX and the like hold or name, and OBJ names in "
+          "its .mtl file")
       .implementation(3)
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         SHERD_ASSIGN(TriMesh mesh, loadMesh(params, io.exec()));

@@ -15,10 +15,9 @@ constexpr std::size_t kMostEntries = static_cast<std::size_t>(std::numeric_limit
 
 // Statements that say nothing about the surface's shape or attributes.
 constexpr std::string_view kIgnored[] = {
-    "g",      "o",          "s",         "l",     "p",        "vp",       "mg",     "mtllib",
-    "usemap", "maplib",     "bevel",     "lod",   "c_interp", "d_interp", "cstype", "deg",
-    "bmat",   "step",       "parm",      "trim",  "hole",     "scrv",     "sp",     "end",
-    "con",    "shadow_obj", "trace_obj", "ctech", "stech",    "call",     "csh"};
+    "g",    "o",        "s",        "l",      "p",          "vp",        "mg",    "usemap", "maplib", "bevel",
+    "lod",  "c_interp", "d_interp", "cstype", "deg",        "bmat",      "step",  "parm",   "trim",   "hole",
+    "scrv", "sp",       "end",      "con",    "shadow_obj", "trace_obj", "ctech", "stech",  "call",   "csh"};
 
 class ObjReader {
  public:
@@ -57,6 +56,10 @@ class ObjReader {
     if (keyword == "vn") return vertexNormal();
     if (keyword == "f" || keyword == "fo") return face();
     if (keyword == "usemtl") return useMaterial();
+    if (keyword == "mtllib") {
+      libraries_.emplace_back(scan_.rest());
+      return {};
+    }
     if (keyword == "curv" || keyword == "curv2" || keyword == "surf") {
       return scan_.error("free-form geometry (" + quoted(keyword) + ") is not read", "export polygons");
     }
@@ -214,6 +217,7 @@ class ObjReader {
     finishNormals(mesh);
     assembleColors(mesh);
     assembleMaterials(mesh, split);
+    file.materialLibraries = std::move(libraries_);
     return file;
   }
 
@@ -244,7 +248,7 @@ class ObjReader {
   std::vector<Corner> corners_;  ///< along polygons_.vertices
   std::vector<Index> materialOf_;
   Index materialNow_ = -1;
-  std::vector<std::string> materials_;
+  std::vector<std::string> materials_, libraries_;
   std::unordered_map<std::string, Index> materialNumber_;
   Forward forward_[3];
   bool anyUv_ = false, anyNormal_ = false;

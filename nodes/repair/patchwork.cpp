@@ -140,6 +140,7 @@ TriMesh bare(const Patchwork& surface) {
 TriMesh finished(const Patchwork& surface, const TriMesh& given) {
   TriMesh mesh = bare(surface);
   mesh.materials = given.materials;
+  mesh.looks = given.looks;
   mesh.frame = given.frame;
   mesh.source = given.source;
   if (!given.normals.empty()) addNormals(mesh, surface, given);

@@ -81,7 +81,10 @@ class Maker {
 
   void setMaterials() {
     mesh_.materials = source_.materials;
-    if (source_.materialOf.empty()) mesh_.materials = {kOutside};
+    if (source_.materialOf.empty())
+      mesh_.materials = {kOutside};
+    else
+      mesh_.looks = source_.looks;
     const auto found = std::find(mesh_.materials.begin(), mesh_.materials.end(), kInside);
     const auto inside = static_cast<Index>(found - mesh_.materials.begin());
     if (found == mesh_.materials.end()) mesh_.materials.push_back(kInside);

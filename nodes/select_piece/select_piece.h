@@ -26,8 +26,8 @@ struct SelectPieceParams {
 struct SelectedPiece {
   /// Only the vertices that the piece uses, in their order in Fragments::positions; skin before crack. Frame
   /// and source are the body's, `piece` is the piece's name. Materials are the body's, then `inside` unless
-  /// it is among them; a body without materials gets `outside` for its skin. Normals, UV and colour sets are
-  /// those of the body: where it has none, nor has the piece; crack faces are white.
+  /// it is among them; a body without materials gets `outside` for its skin. Looks are shared. Normals, UV
+  /// and colour sets are those of the body: where it has none, nor has the piece; crack faces are white.
   TriMesh mesh;
   std::size_t touching = 0;  ///< vertices doubled where parts of the piece touch in a point or along an edge
 };

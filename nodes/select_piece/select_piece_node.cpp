@@ -18,6 +18,7 @@ NodeType selectPieceNode() {
       .output<double>("density", "the body's, for Simulate's `density`, kg/m³")
       .output<double>("young", "the body's, for Simulate's `young`, Pa")
       .output<double>("poisson", "the body's, for Simulate's `poisson`")
+      .implementation(2)
       .run([](const SelectPieceParams& params, NodeIo& io) -> Result<void> {
         const auto pieces = io.in<Fragments>("pieces");
         SHERD_ASSIGN(SelectedPiece selected, selectPiece(*pieces, params, io.exec()));

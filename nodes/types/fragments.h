@@ -60,7 +60,8 @@ struct Fragments {
 };
 
 /// A corner attribute of the source at one corner of piece triangle `t`: exact copy where uncut, else the
-/// barycentric combination of the source triangle's three.
+/// barycentric combination of the source triangle's three, in each component within the range of these: what
+/// is equal at all three, or ends at 1, stays so in spite of rounding.
 template <class V>
 V cornerAttribute(const Fragments& f, const Piece& piece, std::size_t t, std::size_t corner,
                   const std::vector<V>& perCorner) {
@@ -68,7 +69,11 @@ V cornerAttribute(const Fragments& f, const Piece& piece, std::size_t t, std::si
   const Index cut = piece.surfaceCut[t];
   if (cut < 0) return perCorner[first + corner];
   const CornerWeights& w = f.cutCorners[at(cut)][corner];
-  return w[0] * perCorner[first] + w[1] * perCorner[first + 1] + w[2] * perCorner[first + 2];
+  const V &a = perCorner[first], &b = perCorner[first + 1], &c = perCorner[first + 2];
+  return (w[0] * a + w[1] * b + w[2] * c)
+      .eval()
+      .cwiseMax(a.cwiseMin(b).cwiseMin(c))
+      .cwiseMin(a.cwiseMax(b).cwiseMax(c));
 }
 
 void hashValue(Hasher& hasher, const Fragments& fragments);

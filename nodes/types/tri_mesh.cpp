@@ -1,6 +1,7 @@
 #include "types/tri_mesh.h"
 
 #include "base/value_type.h"
+#include "types/surface_looks.h"
 #include "types/value_bytes.h"
 
 namespace sherd {
@@ -15,6 +16,7 @@ void hashValue(Hasher& hasher, const TriMesh& mesh) {
   for (const auto& name : mesh.materials) hasher.add(name);
   hashBits(hasher, mesh.frame);
   hasher.add(mesh.source).add(mesh.piece);
+  hashPart(hasher, mesh.looks);
 }
 
 std::size_t byteSize(const TriMesh& mesh) {
@@ -22,6 +24,7 @@ std::size_t byteSize(const TriMesh& mesh) {
                       mesh.normals.size() * sizeof(Vec3) + mesh.materialOf.size() * sizeof(Index);
   for (const auto& set : mesh.uvSets) bytes += set.uv.size() * sizeof(Vec2);
   for (const auto& set : mesh.colorSets) bytes += set.rgba.size() * sizeof(Vec4);
+  if (mesh.looks) bytes += byteSize(*mesh.looks);
   return bytes;
 }
 
@@ -42,6 +45,7 @@ void saveValue(ArchiveWriter& to, const TriMesh& mesh) {
   putBits(to, mesh.frame);
   to.text(mesh.source);
   to.text(mesh.piece);
+  to.part(mesh.looks);
 }
 
 namespace {
@@ -78,6 +82,7 @@ std::optional<TriMesh> loadValue(ArchiveReader& from, std::type_identity<TriMesh
   getBits(from, mesh.frame);
   mesh.source = from.text();
   mesh.piece = from.text();
+  mesh.looks = from.part<SurfaceLooks>();
   if (!from.ok() || !isSound(mesh)) loaded.reset();
   return loaded;
 }

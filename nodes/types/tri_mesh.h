@@ -1,6 +1,7 @@
 // A triangle surface with the artist's attributes, kept per corner so that seams need no doubled vertices.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -11,6 +12,8 @@
 #include "types/vec.h"
 
 namespace sherd {
+
+struct SurfaceLooks;  // types/surface_looks.h
 
 /// How a file's coordinates relate to the program's (metres, y up, right-handed):
 /// metres = metresPerUnit · turn(file), where turn is the identity for y up and (x, y, z) → (x, z, −y) for z
@@ -31,7 +34,7 @@ struct FileFrame {
 /// Corner c of triangle t is entry 3 t + c of every per-corner array.
 struct TriMesh {
   static constexpr const char* typeName = "Mesh";
-  static constexpr int archiveVersion = 2;
+  static constexpr int archiveVersion = 3;
 
   struct UvSet {
     std::string name;
@@ -52,6 +55,8 @@ struct TriMesh {
   FileFrame frame;                     ///< of the file that it came from
   std::string source;                  ///< that file's name, for messages
   std::string piece;  ///< "piece_0003": the piece of an earlier fracture that this is; empty for a whole body
+  /// What `materials` look like, along these; null where the file says no more than names.
+  std::shared_ptr<const SurfaceLooks> looks;
 
   std::size_t cornerCount() const { return 3 * triangles.size(); }
 };

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <vector>
 
+#include "graph/companion_files.h"
 #include "graph/param.h"
 
 namespace sherd {
@@ -48,6 +49,22 @@ Result<Digest> FileDigests::of(const std::string& path) {
   return known_.emplace(path, *digest).first->second;
 }
 
+namespace {
+
+/// Names are taken from where the file lies, so that a folder may move as a whole. One that is missing
+/// counts, too: it may come.
+void addCompanions(Hasher& hasher, const std::string& path, FileDigests& files) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  for (const std::string& companion : companionFiles(path)) {
+    const auto content = files.of(companion);
+    const std::string name = std::filesystem::path(companion).lexically_relative(folder).string();
+    hasher.add(std::string_view(name.empty() ? companion : name)).add(content.ok());
+    if (content.ok()) hasher.add(*content);
+  }
+}
+
+}  // namespace
+
 Result<Digest> recipeWithFiles(const Graph::Node& node, const ParamValues& params, FileDigests& files) {
   if (!node.readsFiles) return node.recipe;
   Hasher hasher;
@@ -64,6 +81,7 @@ Result<Digest> recipeWithFiles(const Graph::Node& node, const ParamValues& param
     }
     hasher.add(std::string_view(info.name)).add(*content);
     hasher.add(std::string_view(std::filesystem::path(*path).filename().native()));
+    addCompanions(hasher, *path, files);
   }
   return hasher.digest();
 }

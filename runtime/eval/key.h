@@ -33,8 +33,8 @@ class FileDigests {
 /// The digest of one file's content; O(its size).
 Result<Digest> digestOfFile(const std::string& path);
 
-/// The node's recipe with the content and name (readers go by its ending) of the files that `params` name.
-/// The Error's port is the parameter.
+/// The node's recipe with the content and name (readers go by its ending) of the files that `params` name,
+/// and of those that are read with them (graph/companion_files.h). The Error's port is the parameter.
 Result<Digest> recipeWithFiles(const Graph::Node& node, const ParamValues& params, FileDigests& files);
 
 /// Parameters whose names of files came over wires, with these names.

@@ -78,7 +78,7 @@ const std::vector<std::pair<Names, Names>> kLibraries{
     {{"embree3/"}, {"nodes/geometry/", "nodes/preview/"}},
     {{"png.h"}, {"nodes/pictures/"}},
     {{"Eigen/"}, {"nodes/"}},
-    {{"nlohmann/"}, {"runtime/graph/", "runtime/cli/", "nodes/export/"}},
+    {{"nlohmann/"}, {"runtime/graph/", "runtime/cli/", "nodes/export/", "nodes/load_mesh/"}},
 };
 
 /// What only the command line may do.

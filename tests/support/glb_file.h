@@ -30,6 +30,7 @@ class GlbFile {
     for (const auto& accessor : list("accessors")) checkAccessor(accessor);
     for (const auto& mesh : list("meshes"))
       for (const auto& primitive : mesh["primitives"]) checkPrimitive(primitive);
+    checkTextures();
     checkScene();
   }
 
@@ -48,6 +49,11 @@ class GlbFile {
   }
   GlbArray attribute(const nlohmann::json& primitive, const std::string& name) const {
     return array(primitive["attributes"].at(name).get<std::size_t>());
+  }
+  /// The bytes of image `number`.
+  std::string image(std::size_t number) const {
+    const auto& view = json["bufferViews"].at(json["images"].at(number)["bufferView"].get<std::size_t>());
+    return bytes_.substr(binary_ + view.value("byteOffset", 0u), view["byteLength"].get<std::size_t>());
   }
   std::vector<std::size_t> indices(const nlohmann::json& primitive) const {
     std::vector<std::size_t> result;
@@ -111,7 +117,7 @@ class GlbFile {
     expect(json["buffers"].size() == 1 && !json["buffers"][0].contains("uri"), "one buffer, in the file");
     const std::size_t length = json["buffers"][0]["byteLength"];
     expect(length <= binaryLength_ && binaryLength_ <= length + 3, "buffer's length");
-    std::size_t end = 0;
+    std::size_t end = 0, number = 0;
     for (const auto& view : list("bufferViews")) {
       expect(view["buffer"] == 0, "view's buffer");
       const std::size_t first = view.value("byteOffset", 0u), size = view["byteLength"];
@@ -119,12 +125,38 @@ class GlbFile {
       expect(size > 0 && first + size <= length, "view leaves the buffer");
       expect(first >= end, "views overlap");
       end = first + size;
+      if (isImage(number++)) {
+        expect(!view.contains("target") && !view.contains("byteStride"), "image's view");
+        continue;
+      }
       const int target = view["target"];
       expect(target == 34962 || target == 34963, "view's target");
       if (!view.contains("byteStride")) continue;
       const std::size_t stride = view["byteStride"];
       expect(target == 34962 && stride % 4 == 0 && stride >= 4 && stride <= 252, "view's stride");
     }
+  }
+
+  bool isImage(std::size_t view) const {
+    for (const auto& image : list("images"))
+      if (image["bufferView"] == view) return true;
+    return false;
+  }
+
+  /// That what a material names is there.
+  void checkTextures() {
+    for (const auto& texture : list("textures")) {
+      expect(texture["source"].get<std::size_t>() < list("images").size(), "texture's image");
+      if (texture.contains("sampler"))
+        expect(texture["sampler"].get<std::size_t>() < list("samplers").size(), "texture's sampler");
+    }
+    for (const auto& image : list("images"))
+      expect(image["mimeType"] == "image/png" || image["mimeType"] == "image/jpeg", "image's type");
+    for (const auto& material : list("materials"))
+      for (const auto* owner : {&material, &material["pbrMetallicRoughness"]})
+        for (const auto& [name, use] : owner->items())
+          if (name.ends_with("Texture"))
+            expect(use["index"].get<std::size_t>() < list("textures").size(), "material's texture");
   }
 
   void checkAccessor(const nlohmann::json& accessor) {

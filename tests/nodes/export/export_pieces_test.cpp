@@ -185,6 +185,17 @@ TEST_F(ExportGlb, OldAndNewCrackFacesAreOfOneMaterial) {
     ASSERT_EQ(materials.size(), isPiece ? 2u : 3u);
     EXPECT_EQ(materials.back(), inside);
   }
+  // Old crack faces are white, as new ones, and so without colours, too.
+  box.colorSets.push_back({"dirt", std::vector<Vec4>(box.cornerCount(), Vec4::Ones())});
+  for (const double colour : {1.0, 0.5}) {
+    box.colorSets[0].rgba[3 * 5] = Vec4(1, colour, 1, 1);  // of a side that is `inside`
+    const test::GlbFile coloured = mustExport(test::slices(box, {1.1}));
+    std::size_t with = 0;
+    for (const auto& primitive : primitivesOf(coloured, 0))
+      if (materialOf(coloured, primitive) == "inside") with += primitive["attributes"].contains("COLOR_0");
+    EXPECT_EQ(with, colour < 1 ? 1u : 0u);
+  }
+  box.colorSets.clear();
   // Where no old crack face is left in sight the material is there all the same, once.
   box.materials = {"paint", "base", "inside"};
   const test::GlbFile file = mustExport(test::slices(box, {1.1}));

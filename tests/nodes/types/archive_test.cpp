@@ -16,6 +16,10 @@ TriMesh full() {
   return made::triMesh();
 }
 template <>
+SurfaceLooks full() {
+  return made::surfaceLooks();
+}
+template <>
 TetMesh full() {
   return made::tetMesh();
 }
@@ -77,8 +81,8 @@ class Archive : public testing::Test {
   }
 };
 
-using Types = testing::Types<TriMesh, TetMesh, Impact, EnergyField, WeightField, DegreeModel, Embedding,
-                             RestShape, Sites, Partition, Fragments, Proxies>;
+using Types = testing::Types<TriMesh, SurfaceLooks, TetMesh, Impact, EnergyField, WeightField, DegreeModel,
+                             Embedding, RestShape, Sites, Partition, Fragments, Proxies>;
 TYPED_TEST_SUITE(Archive, Types);
 
 TYPED_TEST(Archive, AnEmptyValueComesBack) { this->expectRoundTrip(TypeParam()); }
@@ -174,7 +178,7 @@ TEST(ArchiveParts, AreOnDiskOnceAndSharedAgain) {
   const Digest e = store.keep(std::make_shared<const EnergyField>(energy));
   const Digest m = store.keep(std::make_shared<const Embedding>(embedding));
   const Digest f = store.keep(std::make_shared<const Fragments>(fragments));
-  EXPECT_EQ(store.entries(), 5u);  // these three, the tetrahedra and the surface
+  EXPECT_EQ(store.entries(), 6u);  // these three, the tetrahedra, the surface and its looks
   const auto loaded = store.load<EnergyField>(e);
   ASSERT_NE(loaded, nullptr);
   EXPECT_EQ(loaded->tets, store.load<Embedding>(m)->tets);
@@ -188,6 +192,19 @@ bool accepted(const Spoil& spoil) {
   spoil(value);
   MemoryStore store;
   return store.load<T>(store.keep(std::make_shared<const T>(value))) != nullptr;
+}
+
+TEST(ArchiveChecks, SurfaceLooks) {
+  const auto first = [](SurfaceLooks& looks) -> Look& { return *looks.looks[0]; };
+  EXPECT_TRUE(accepted<SurfaceLooks>([](SurfaceLooks&) {}));
+  EXPECT_FALSE(accepted<SurfaceLooks>([&](SurfaceLooks& l) { first(l).normalTexture.image = 2; }));
+  EXPECT_FALSE(accepted<SurfaceLooks>([&](SurfaceLooks& l) { first(l).colourTexture.image = -2; }));
+  EXPECT_FALSE(accepted<SurfaceLooks>([&](SurfaceLooks& l) { first(l).colourTexture.uvSet = -1; }));
+  EXPECT_FALSE(accepted<SurfaceLooks>([&](SurfaceLooks& l) { first(l).mtl[1].image = 2; }));
+  EXPECT_FALSE(
+      accepted<SurfaceLooks>([&](SurfaceLooks& l) { first(l).alpha = static_cast<Look::Alpha>(3); }));
+  EXPECT_FALSE(accepted<SurfaceLooks>(
+      [&](SurfaceLooks& l) { first(l).occlusionTexture.wrapV = static_cast<Texture::Wrap>(3); }));
 }
 
 TEST(ArchiveChecks, TriMesh) {

@@ -13,12 +13,29 @@
 #include "types/partition.h"
 #include "types/proxies.h"
 #include "types/rest_shape.h"
+#include "types/surface_looks.h"
 
 namespace sherd::made {
 
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
 inline constexpr double kLargest = std::numeric_limits<double>::max();
+
+inline SurfaceLooks surfaceLooks() {
+  SurfaceLooks looks;
+  looks.images = {{"a b.png", std::string("\x89PNG\r\n\0\x1a", 8)}, {"", ""}};
+  Look glazed;
+  glazed.baseColour = {0.25, -0.0, 1, kSmallest};
+  glazed.metallic = 0.5;
+  glazed.emissive = {0, kLargest, 1};
+  glazed.alpha = Look::Alpha::Mask;
+  glazed.doubleSided = true;
+  glazed.colourTexture = {0, 1, 0.5, Texture::Wrap::Mirror, Texture::Wrap::Clamp};
+  glazed.emissiveTexture.image = 1;
+  glazed.mtl = {{"Kd 0.25 0 1", -1}, {"map_Kd -bm 2", 0}};
+  looks.looks = {glazed, std::nullopt, Look{}};
+  return looks;
+}
 
 inline TriMesh triMesh() {
   TriMesh mesh = *families::box(1, 1, 1, Vec3(1, 2, 3)).surface;
@@ -34,6 +51,7 @@ inline TriMesh triMesh() {
   mesh.frame = {0.01, FileFrame::Up::Z};
   mesh.source = "a b/ü.obj";
   mesh.piece = "piece_0003_0002";
+  mesh.looks = std::make_shared<const SurfaceLooks>(surfaceLooks());
   return mesh;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -18,6 +19,7 @@
 #include "types/partition.h"
 #include "types/proxies.h"
 #include "types/rest_shape.h"
+#include "types/surface_looks.h"
 #include "types/tet_mesh.h"
 #include "types/tri_mesh.h"
 
@@ -39,8 +41,28 @@ auto of(Maybe<TriMesh::ColorSet> auto& v) {
   return std::tie(a, b);
 }
 auto of(Maybe<TriMesh> auto& v) {
-  auto& [a, b, c, d, e, f, g, h, i, j] = v;
-  return std::tie(a, b, c, d, e, f, g, h, i, j);
+  auto& [a, b, c, d, e, f, g, h, i, j, k] = v;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
+}
+auto of(Maybe<ImageFile> auto& v) {
+  auto& [a, b] = v;
+  return std::tie(a, b);
+}
+auto of(Maybe<Texture> auto& v) {
+  auto& [a, b, c, d, e] = v;
+  return std::tie(a, b, c, d, e);
+}
+auto of(Maybe<MtlStatement> auto& v) {
+  auto& [a, b] = v;
+  return std::tie(a, b);
+}
+auto of(Maybe<Look> auto& v) {
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = v;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m);
+}
+auto of(Maybe<SurfaceLooks> auto& v) {
+  auto& [a, b] = v;
+  return std::tie(a, b);
 }
 auto of(Maybe<TetQuality> auto& v) {
   auto& [a, b, c, d, e] = v;
@@ -160,6 +182,10 @@ bool sameBits(const std::shared_ptr<const T>& a, const std::shared_ptr<const T>&
   return a == nullptr || b == nullptr ? a == b : sameBits(*a, *b);
 }
 template <class T>
+bool sameBits(const std::optional<T>& a, const std::optional<T>& b) {
+  return a && b ? sameBits(*a, *b) : a.has_value() == b.has_value();
+}
+template <class T>
 bool sameBits(const std::vector<T>& a, const std::vector<T>& b) {
   if (a.size() != b.size()) return false;
   for (std::size_t i = 0; i < a.size(); ++i)
@@ -232,6 +258,8 @@ template <class T, class Check>
 void changeEach(std::vector<T>& list, const Check& check);
 template <class T, class Check>
 void changeEach(std::shared_ptr<const T>& part, const Check& check);
+template <class T, class Check>
+void changeEach(std::optional<T>& maybe, const Check& check);
 
 template <Described T, class Check>
 void changeEach(T& value, const Check& check) {
@@ -258,6 +286,14 @@ void changeEach(std::shared_ptr<const T>& part, const Check& check) {
   part = kept == nullptr ? std::make_shared<const T>() : nullptr;
   check();
   part = kept;
+}
+template <class T, class Check>
+void changeEach(std::optional<T>& maybe, const Check& check) {
+  const std::optional<T> kept = maybe;
+  if (maybe) changeEach(*maybe, check);
+  maybe = kept ? std::nullopt : std::optional<T>(std::in_place);
+  check();
+  maybe = kept;
 }
 
 }  // namespace sherd::fields
