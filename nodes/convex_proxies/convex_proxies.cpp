@@ -42,6 +42,15 @@ Result<PieceProxy> proxyOf(const Fragments& f, const Piece& piece, const ConvexP
 
 double overlapShare(const PieceProxy& p) { return p.pieceVolume > 0 ? p.overlap / p.pieceVolume : 0; }
 
+constexpr double kRounding = 1e-7;  ///< shares of a volume that are not told of
+
+/// How much larger hulls are than what they stand for, in words.
+std::string moreVolume(double share) {
+  if (std::abs(share) < kRounding) return "as much volume as the pieces";
+  return fmt::format("{:.3g} % {} volume than the pieces", 100 * std::abs(share),
+                     share > 0 ? "more" : "less");
+}
+
 void sayOutcome(const Proxies& proxies, const Exec& exec) {
   std::size_t hulls = 0;
   double volume = 0, pieces = 0;
@@ -55,11 +64,13 @@ void sayOutcome(const Proxies& proxies, const Exec& exec) {
     if (std::any_of(p.hulls.begin(), p.hulls.end(), [](const ConvexHull& h) { return h.volume <= 0; }))
       exec.warn(p.name + " is flat: its hull has no volume, and engines may refuse it");
   }
-  exec.info(
-      fmt::format("{} hull{} for {} piece{}; {:.3g} % more volume than the pieces, {:.3g} % at most ({})",
-                  hulls, hulls == 1 ? "" : "s", proxies.pieces.size(), proxies.pieces.size() == 1 ? "" : "s",
-                  pieces > 0 ? 100 * (volume - pieces) / pieces : 0, 100 * worst->error, worst->name));
-  if (deepest->overlap > 0)
+  const std::string most = worst->error < kRounding
+                               ? ""
+                               : fmt::format(", {:.3g} % more at most ({})", 100 * worst->error, worst->name);
+  exec.info(fmt::format("{} hull{} for {} piece{}; {}{}", hulls, hulls == 1 ? "" : "s", proxies.pieces.size(),
+                        proxies.pieces.size() == 1 ? "" : "s",
+                        moreVolume(pieces > 0 ? (volume - pieces) / pieces : 0), most));
+  if (overlapShare(*deepest) > kRounding)
     exec.info(fmt::format("hulls of neighbours overlap by up to {:.3g} % of a piece ({})",
                           100 * overlapShare(*deepest), deepest->name));
 }

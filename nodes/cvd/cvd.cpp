@@ -95,10 +95,10 @@ Result<Partition> cvd(const std::shared_ptr<const Embedding>& embedding, const W
   if (exec.cancelled()) return cancelledError();
   warnOfEmptyPins(lloyd, exec);
 
-  // γ belongs to the sites that a search found by it: another number of them is one asked for.
+  // Only as many sites as a search found by γ were found by it: another number of them is one asked for.
   const bool degreeGiven = start == nullptr || start->degreeGiven || given != degree;
   Partition cells{embedding,      weights.material, lloyd.sites(),
-                  lloyd.labels(), lloyd.energy(),   degreeGiven ? 0.0 : start->gamma,
+                  lloyd.labels(), lloyd.energy(),   start == nullptr ? 0.0 : start->gamma,
                   degreeGiven,    end.iterations,   end.converged};
   exec.info(report(cells));
   return cells;

@@ -14,6 +14,7 @@
 #include "embed/part.h"
 #include "embed/spectrum.h"
 #include "embed/unfold.h"
+#include "geometry/paint_place.h"
 #include "geometry/solid.h"
 #include "geometry/tet_edges.h"
 
@@ -260,7 +261,7 @@ Result<std::vector<double>> stretchAt(const TetMesh& tets, const ScalarGrid* fie
   }
   if (!isOne) return stretch;
   if (!field->isConstant())
-    exec.warn("the stretch is 1 all over the body: its strokes miss it, or are thinner than the tetrahedra");
+    exec.warn("the stretch is 1 all over the body: its strokes miss it; " + placeOfPaint(*field, tets));
   return std::vector<double>{};
 }
 

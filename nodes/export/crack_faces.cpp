@@ -63,12 +63,12 @@ std::vector<Vec3> surfaceNormals(const Fragments& f, const Piece& piece) {
 }
 
 void warnOfNames(const TriMesh& source, const Exec& exec) {
+  if (!source.piece.empty()) return;  // what is `inside` of a piece is so from an earlier fracture
   for (const std::string& name : source.materials)
     if (name == kInside)
       exec.warn(
           "the mesh has a material 'inside' of its own, the name that crack faces get; rename it to tell "
-          "them "
-          "apart");
+          "them apart");
 }
 
 }  // namespace sherd

@@ -44,7 +44,8 @@ inline Index outerMaterial(const TriMesh& source, const Piece& piece, std::size_
 inline constexpr const char* kOutside = "outside";
 inline constexpr const char* kInside = "inside";
 
-/// Warns where a material of the source has a name that would be taken for ours.
+/// Warns where a material of the artist's has a name that would be taken for ours. A piece that is broken
+/// again has ours already: its old crack faces and its new ones are of the same material.
 void warnOfNames(const TriMesh& source, const Exec& exec);
 
 }  // namespace sherd

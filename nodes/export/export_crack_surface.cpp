@@ -105,11 +105,16 @@ std::vector<Outcome> writePieces(const Content& content, Params::Format format, 
 void warnOfLosses(const TriMesh& source, const Params& params, const Exec& exec) {
   if (params.format != Params::Format::Obj) return;
   const std::size_t uvs = source.uvSets.size() > 1 ? source.uvSets.size() - 1 : 0;
-  if (uvs + source.colorSets.size() == 0) return;
-  exec.warn(fmt::format(
-      "OBJ holds the first UV set only: {} more UV set{} and {} colour set{} are left out; "
-      "format ply keeps them",
-      uvs, uvs == 1 ? "" : "s", source.colorSets.size(), source.colorSets.size() == 1 ? "" : "s"));
+  const std::size_t colours = source.colorSets.size();
+  if (uvs + colours == 0) return;
+  const auto count = [](std::size_t n, const char* what) {
+    return n == 0 ? std::string() : fmt::format("{} {} set{}", n, what, n == 1 ? "" : "s");
+  };
+  exec.warn(fmt::format("OBJ holds {}{}{}: {}{}{} {} left out; format ply keeps {}",
+                        uvs > 0 ? "the first UV set only" : "", uvs > 0 && colours > 0 ? ", and " : "",
+                        colours > 0 ? "no colours" : "", count(uvs, "more UV"),
+                        uvs > 0 && colours > 0 ? " and " : "", count(colours, "colour"),
+                        uvs + colours == 1 ? "is" : "are", uvs + colours == 1 ? "it" : "them"));
 }
 
 /// E_D and γ in words.

@@ -19,7 +19,7 @@ NodeType exportCrackSurfaceNode() {
       .number("texture_density", &Params::textureDensity,
               {.unit = "1/m", .min = 0, .openMin = true, .help = kTextureDensityHelp})
       .output<std::string>("manifest", "path of pieces.json")
-      .implementation(2)
+      .implementation(3)
       .writesFiles()
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         SHERD_ASSIGN(ExportReport report, exportCrackSurface(*io.in<Fragments>("pieces"), params, io.exec()));

@@ -12,7 +12,8 @@
 // (name, contact_area, centroid, normal towards it), parent; SI units.
 //
 // A mesh has one primitive for each material: the artist's own, `outside` for faces that have none, `inside`
-// for crack faces. Two pieces hold the same material, not two of the same name.
+// for crack faces, those of earlier fractures included. Two pieces hold the same material, not two of the
+// same name.
 //   outside   NORMAL, TEXCOORD_0…, COLOR_0… as far as the source has them, cut triangles with the
 //   interpolation
 //             of their corners. Colours are kept within [0, 1], as the format demands (with a warning).

@@ -15,7 +15,8 @@ namespace {
 
 constexpr Floats3 kOutsideColour{0.8f, 0.8f, 0.8f}, kInsideColour{0.55f, 0.5f, 0.45f};
 
-/// Materials in use and their numbers in the file: the artist's, −1 for `outside`, −2 for `inside`.
+/// Materials in use and their numbers in the file: the artist's, −1 for `outside`, −2 for `inside`, which is
+/// the same as that of the older crack faces of a piece.
 struct Palette {
   static constexpr Index outside = -1, inside = -2;
   std::vector<GlbMaterial> materials;
@@ -33,10 +34,14 @@ struct Palette {
         usesOutside |= material < 0;
       }
     }
-    for (std::size_t m = 0; m < used.size(); ++m)
-      if (used[m]) add(static_cast<Index>(m), source.materials[m], kOutsideColour);
+    for (std::size_t m = 0; m < used.size(); ++m) {
+      const bool isOurs = !source.piece.empty() && source.materials[m] == kInside;
+      if (!used[m] && !(isOurs && usesInside)) continue;
+      add(static_cast<Index>(m), source.materials[m], isOurs ? kInsideColour : kOutsideColour);
+      if (isOurs) number.try_emplace(inside, materials.size() - 1);
+    }
     if (usesOutside) add(outside, kOutside, kOutsideColour);
-    if (usesInside) add(inside, kInside, kInsideColour);
+    if (usesInside && !number.contains(inside)) add(inside, kInside, kInsideColour);
   }
 
  private:

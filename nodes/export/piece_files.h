@@ -13,7 +13,9 @@ namespace sherd {
 std::vector<std::size_t> crackOrder(const Piece& piece);
 
 /// Wavefront OBJ. Of the source's attributes it holds normals, the first UV set and the materials' names, or
-/// `outside` where there is none. Crack faces are `inside`, one group per neighbour: "g A_crack_with_B".
+/// `outside` where there is none; skin is in the group "g A" of its piece. Crack faces are `inside`, one
+/// group per neighbour: "g A_crack_with_B". The group's line follows the material's each time: faces that an
+/// earlier fracture laid bare are skin now, though their material is `inside`.
 std::string surfaceObj(const Fragments& fragments, const Piece& piece);
 std::string crackObj(const Fragments& fragments, const Piece& piece, const CrackCorners& cracks);
 

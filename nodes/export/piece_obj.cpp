@@ -67,8 +67,11 @@ std::string surfaceObj(const Fragments& f, const Piece& piece) {
   Index material = -2;
   for (std::size_t t = 0; t < count; ++t) {
     const Index wanted = outerMaterial(source, piece, t);
+    // The group comes last: whatever the material is called (`inside`, where an earlier fracture made it), in
+    // this fracture these faces are skin.
     if (wanted != material)
-      faces << "usemtl " << (wanted < 0 ? kOutside : objName(source.materials[at(wanted)])) << '\n';
+      faces << "usemtl " << (wanted < 0 ? kOutside : objName(source.materials[at(wanted)])) << "\ng "
+            << piece.name << '\n';
     material = wanted;
     faces << 'f';
     for (std::size_t c = 0; c < 3; ++c) {
@@ -85,7 +88,7 @@ std::string surfaceObj(const Fragments& f, const Piece& piece) {
   positions.write(out);
   uvs.write(out);
   directions.write(out);
-  out << "g " << piece.name << '\n' << faces.take();
+  out << faces.take();
   return out.take();
 }
 
@@ -100,7 +103,7 @@ std::string crackObj(const Fragments& f, const Piece& piece, const CrackCorners&
   for (const std::size_t t : crackOrder(piece)) {
     if (piece.crackNeighbour[t] != neighbour) {
       neighbour = piece.crackNeighbour[t];
-      faces << "g " << piece.name << "_crack_with_" << f.pieces[at(neighbour)].name << "\nusemtl " << kInside
+      faces << "usemtl " << kInside << "\ng " << piece.name << "_crack_with_" << f.pieces[at(neighbour)].name
             << '\n';
     }
     faces << 'f';

@@ -73,7 +73,10 @@ std::string piecesJson(const Fragments& f, const std::vector<Bond>& bonds,
   json["format"] = 1;
   json["about"] =
       "Pieces of a fracture. mass kg, volume m^3, centre_of_mass m, inertia kg m^2 about the centre of mass, "
-      "contact_area m^2, E_D and gamma J m^2; right-handed axes, y up. A bond is where two pieces touch: its "
+      "contact_area m^2, E_D and gamma J m^2; N cells were made, and merged_parts of them (or "
+      "parts of them) joined a neighbour, since they were below min_volume; where degree_given, N was asked "
+      "for whatever gamma, and below_threshold, which tells whether E_D is below gamma, is null; "
+      "right-handed axes, y up. A bond is where two pieces touch: its "
       "centroid in m, its normal the mean over the contact from the first piece to the second (for a "
       "neighbour: "
       "from the piece to it). Coordinates in the piece files are in the source file's own unit and axes, as "
@@ -83,10 +86,12 @@ std::string piecesJson(const Fragments& f, const std::vector<Bond>& bonds,
   json["density"] = f.material.density;
   json["N"] = f.sites;
   json["E_D"] = f.energy;
-  json["gamma"] = f.gamma;
+  // Cells whose number was asked for may come from no γ at all.
+  json["gamma"] = f.degreeGiven && f.gamma == 0 ? Json(nullptr) : Json(f.gamma);
   json["degree_given"] = f.degreeGiven;
-  json["below_threshold"] = !f.degreeGiven && f.energy < f.gamma;
+  json["below_threshold"] = f.degreeGiven ? Json(nullptr) : Json(f.energy < f.gamma);
   json["piece_count"] = f.pieces.size();
+  json["merged_parts"] = f.counts.mergedParts;
   json["pieces"] = Json::array();
   const std::vector<std::vector<Bond>> own = bondsByPiece(bonds, f.pieces.size());
   for (std::size_t p = 0; p < f.pieces.size(); ++p)

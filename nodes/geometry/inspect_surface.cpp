@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <set>
+#include <utility>
 
 #include "geometry/edge_table.h"
 #include "geometry/orient.h"
@@ -12,6 +14,8 @@
 
 namespace sherd {
 namespace {
+
+constexpr std::size_t kPairLimit = 1000;  ///< per block of triangles, to tell which parts meet
 
 void note(Defect& defect, const TriMesh& mesh, const Vec3& place) {
   if (defect.count++ == 0) defect.place = mesh.frame.toFile(place);
@@ -63,9 +67,30 @@ void inspectTriangles(const TriMesh& mesh, SurfaceReport& report) {
     note(report.zeroArea, mesh, middleOf(mesh, at(t)));
 }
 
-void inspectShells(const TriMesh& mesh, const EdgeTable& edges, SurfaceReport& report) {
+/// Which parts meet others; notes how many pairs do.
+std::vector<bool> meetingParts(const TriMesh& mesh, const std::vector<SurfacePart>& parts,
+                               SurfaceReport& report, const Exec& exec) {
+  std::vector<bool> meets(parts.size(), false);
+  if (!report.selfIntersections || parts.size() < 2) return meets;
+  std::vector<std::size_t> partOf(mesh.triangles.size());
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    for (const Index t : parts[p].triangles) partOf[at(t)] = p;
+  const IntersectingPairs met = intersectingPairs(mesh.positions, mesh.triangles, exec, kPairLimit);
+  std::set<std::pair<std::size_t, std::size_t>> pairs;
+  for (const auto& [s, t] : met.pairs) {
+    const auto [a, b] = std::minmax(partOf[at(s)], partOf[at(t)]);
+    if (a == b || !pairs.emplace(a, b).second) continue;
+    note(report.crossingParts, mesh, middleOf(mesh, at(s)));
+    meets[a] = meets[b] = true;
+  }
+  report.crossingParts.more = met.more;
+  return meets;
+}
+
+void inspectShells(const TriMesh& mesh, const EdgeTable& edges, SurfaceReport& report, const Exec& exec) {
   const std::vector<SurfacePart> shells = surfaceParts(mesh.triangles, edges);
   const Nesting nesting = nestShells(mesh, shells);
+  const std::vector<bool> meets = meetingParts(mesh, shells, report, exec);
   for (std::size_t s = 0; s < shells.size(); ++s) {
     const SurfacePart& shell = shells[s];
     const bool manifold = shell.conflict < 0 || edges.trianglesOf(shell.conflict).size() == 2;
@@ -84,7 +109,7 @@ void inspectShells(const TriMesh& mesh, const EdgeTable& edges, SurfaceReport& r
     const Vec3 place = middleOf(mesh, at(shell.triangles[0]));
     if (!(std::abs(volume) > 1e-12 * area * box.diagonal()))
       note(report.noVolume, mesh, place);
-    else if ((volume < 0) != (nesting.depth[s] % 2 == 1))
+    else if (!meets[s] && (volume < 0) != (nesting.depth[s] % 2 == 1))
       note(report.inverted, mesh, place);
   }
 }
@@ -96,11 +121,14 @@ struct Entry {
 };
 
 /// In the order in which they are best repaired.
-const std::array<Entry, 11>& entries() {
+const std::array<Entry, 12>& entries() {
   using R = SurfaceReport;
   static const char* const kHoles = "fill the holes (Blender: select all by trait > non manifold, then fill)";
   static const char* const kNonManifold = "separate or delete the parts that meet there";
-  static const std::array<Entry, 11> list{{
+  static const char* const kUnion =
+      "make it one surface that doesn't cross itself (Blender: boolean union with self intersection, or "
+      "remesh)";
+  static const std::array<Entry, 12> list{{
       {&R::nonFinite, "vertex that is not finite", "vertices that are not finite",
        "export it again without NaN and infinite coordinates"},
       {&R::duplicateTriangles, "duplicate triangle", "duplicate triangles",
@@ -115,14 +143,23 @@ const std::array<Entry, 11>& entries() {
       {&R::nonOrientable, "one-sided part", "one-sided parts", "rebuild it with an inside and an outside"},
       {&R::incoherentEdges, "edge between faces of opposite sides", "edges between faces of opposite sides",
        "make the normals consistent (Blender: recalculate outside)"},
-      {&R::selfIntersections, "pair of intersecting triangles", "pairs of intersecting triangles",
-       "make it one surface that doesn't cross itself (Blender: boolean union with self intersection, or "
-       "remesh)"},
+      {&R::selfIntersections, "pair of intersecting triangles", "pairs of intersecting triangles", kUnion},
+      {&R::crossingParts, "pair of parts that cross or touch", "pairs of parts that cross or touch", kUnion},
       {&R::noVolume, "closed part of no volume", "closed parts of no volume",
        "delete it or give it thickness"},
       {&R::inverted, "part turned inside out", "parts turned inside out", "flip its normals"},
   }};
   return list;
+}
+
+std::string whereIs(const Defect& defect) {
+  // Where a coordinate is no number, the place tells nothing.
+  const bool isNumbered = defect.vertex >= 0;
+  const std::string place =
+      isNumbered ? "vertex " + std::to_string(defect.vertex + 1) + ", " + placeInFile(defect.place)
+                 : "near " + placeInFile(defect.place);
+  if (defect.count > 1) return " (the first " + std::string(isNumbered ? "is " : "") + place + ")";
+  return (isNumbered ? ": " : " ") + place;
 }
 
 }  // namespace
@@ -134,8 +171,11 @@ bool SurfaceReport::sound() const {
 
 Defect nonFiniteVertices(const TriMesh& mesh) {
   Defect defect;
-  for (const Vec3& p : mesh.positions)
-    if (!p.allFinite()) note(defect, mesh, p);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    if (mesh.positions[v].allFinite()) continue;
+    if (!defect) defect.vertex = static_cast<Index>(v);
+    note(defect, mesh, mesh.positions[v]);
+  }
   return defect;
 }
 
@@ -159,7 +199,7 @@ SurfaceReport inspectSurface(const TriMesh& mesh, const Exec& exec) {
     report.selfIntersections.count = crossings.pairs;
     report.selfIntersections.more = crossings.more;
   }
-  inspectShells(mesh, edges, report);
+  inspectShells(mesh, edges, report, exec);
   return report;
 }
 
@@ -172,8 +212,7 @@ std::optional<Error> refusal(const SurfaceReport& report, const std::string& fil
     if (!defect) continue;
     what += (what.empty() ? "" : ", ") + std::string(defect.more ? "at least " : "") +
             std::to_string(defect.count) + " " + (defect.count == 1 ? entry.one : entry.several) +
-            (defect.count == 1 ? " near " : " (the first near ") + placeInFile(defect.place) +
-            (defect.count == 1 ? "" : ")");
+            whereIs(defect);
     if (remedy.find(entry.remedy) == std::string::npos)
       remedy += (remedy.empty() ? "" : "; ") + std::string(entry.remedy);
   }

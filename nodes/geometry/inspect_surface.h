@@ -15,6 +15,7 @@ struct Defect {
   std::size_t count = 0;
   Vec3 place = Vec3::Zero();  ///< in the file's coordinates; of the first one
   bool more = false;          ///< there are at least `count`
+  Index vertex = -1;          ///< of vertices: the first one's number, from 0
 
   explicit operator bool() const { return count > 0; }
 };
@@ -30,8 +31,9 @@ struct SurfaceReport {
   Defect duplicateTriangles;   ///< triangles with the same three corners as an earlier one
   Defect zeroArea;             ///< triangles with their corners on one line
   Defect selfIntersections;    ///< pairs of triangles that meet elsewhere than at a shared corner or edge
+  Defect crossingParts;        ///< pairs of edge-connected parts that meet each other
   Defect noVolume;             ///< closed parts that enclose less than rounding can tell from nothing
-  Defect inverted;             ///< closed parts that face the wrong side
+  Defect inverted;  ///< closed parts that face the wrong side; those that meet others aren't judged
 
   bool sound() const;
 };

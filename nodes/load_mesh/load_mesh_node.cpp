@@ -29,7 +29,7 @@ NodeType loadMeshNode() {
       // Only where a level set is the last resort. As in Tetrahedralize, which measured it.
       .uninterruptible("OpenVDB's meshToVolume", 1120)
       .output<TriMesh>("mesh", "the surface, facing outward, with its normals, UVs, colours and materials")
-      .implementation(2)
+      .implementation(3)
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         SHERD_ASSIGN(TriMesh mesh, loadMesh(params, io.exec()));
         io.out("mesh", std::move(mesh));

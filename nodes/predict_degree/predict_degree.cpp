@@ -47,7 +47,7 @@ void report(const PredictDegreeParams& params, std::size_t sites, double energy,
           fmt::format("{} sites were asked for, but the tetrahedral mesh has only nodes for {}; refine it "
                       "(Tetrahedralize.tets), or ask for fewer",
                       params.degree, sites));
-    exec.info(fmt::format("{} sites as asked for, E_D = {:.6g} J·m²", sites, energy));
+    exec.info(fmt::format("{} {}, E_D = {:.6g} J·m²", sites, sites == 1 ? "site" : "sites", energy));
   } else if (energy < params.gamma) {
     if (sites == 1)
       exec.info(fmt::format("does not break: E_D = {:.6g} J·m² of the whole body is below γ = {:.6g} J·m²",
@@ -95,8 +95,7 @@ Result<Sites> predictDegree(const WeightField& weights, const Embedding& embeddi
     energy = lloyd.energy();
   }
   report(params, lloyd.siteCount(), energy, exhausted, exec);
-  return Sites{lloyd.sites(), energy, given ? 0.0 : params.gamma, given,
-               static_cast<std::int64_t>(lloyd.pinnedCount())};
+  return Sites{lloyd.sites(), energy, params.gamma, given, static_cast<std::int64_t>(lloyd.pinnedCount())};
 }
 
 }  // namespace sherd

@@ -40,11 +40,11 @@ struct PredictDegreeParams {
 /// first of the result, and stay where they are; the search goes on from them. A hit that leaves the whole
 /// body below γ breaks nothing all the same: then there is one site, and it isn't pinned.
 ///
-/// Sites p̄_j (m, in the embedding), E_D and γ, or 0 and `degreeGiven`. γ = 0 itself asks for every site there
-/// can be. Says the outcome; warns where `maxDegree`, or the number of distinct nodes (that weigh), ends the
-/// search before γ is reached. Errors: those of cvd (sizes, finiteness), parameters out of range; `pinned`
-/// without pins, or with more than `degree` or `maxDegree`. Cost: about five runs of Lloyd's
-/// iteration at N.
+/// Sites p̄_j (m, in the embedding), E_D and γ, which decided nothing where `degreeGiven`. γ = 0 itself asks
+/// for every site there can be. Says the outcome; warns where `maxDegree`, or the number of distinct nodes
+/// (that weigh), ends the search before γ is reached. Errors: those of cvd (sizes, finiteness), parameters
+/// out of range; `pinned` without pins, or with more than `degree` or `maxDegree`. Cost: about five runs of
+/// Lloyd's iteration at N.
 Result<Sites> predictDegree(const WeightField& weights, const Embedding& embedding, const Sites* pinned,
                             const PredictDegreeParams& params, const Exec& exec);
 

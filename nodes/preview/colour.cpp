@@ -38,6 +38,8 @@ Colour pieceColour(std::size_t i) {
 
 Colour crackColour(std::size_t i) { return fromOklch(0.94f, 0.03f, hueOf(i)); }
 
+Colour neutralColour() { return {0.62f, 0.60f, 0.57f}; }
+
 Colour energyColour(float t) {
   // Lightness rises evenly; hue turns from blue-violet over red to yellow.
   static constexpr float kStops[][3] = {// lightness, chroma, hue

@@ -14,6 +14,9 @@ Colour pieceColour(std::size_t i);
 /// Its crack faces: pale, nearly white.
 Colour crackColour(std::size_t i);
 
+/// A warm grey, for what has no colour to tell of.
+Colour neutralColour();
+
 /// Perceptually ordered from dark indigo (0) over red to pale yellow (1).
 Colour energyColour(float t);
 

@@ -80,7 +80,12 @@ Result<FieldSoup> fieldSoup(const TriMesh& mesh, const std::vector<Vec3>& normal
                      "paint it with finite values", "beta");
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   out.scale = {*low, *high};
-  for (const double value : values) out.soup.values.push_back(out.scale.place(value));
+  if (out.scale.isOne()) {
+    out.soup.palette = {neutralColour()};
+    out.soup.paint.assign(values.size() / 3, 0);
+  } else {
+    for (const double value : values) out.soup.values.push_back(out.scale.place(value));
+  }
   return out;
 }
 

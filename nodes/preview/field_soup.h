@@ -11,8 +11,8 @@ struct FieldScale {
   double low = 0, high = 0;
   bool isOne() const { return !(high > low); }
   float place(double value) const {
-    return isOne() ? 0.5f : static_cast<float>((value - low) / (high - low));
-  }
+    return static_cast<float>((value - low) / (high - low));
+  }  ///< unless one
 };
 
 struct FieldSoup {
@@ -20,9 +20,9 @@ struct FieldSoup {
   FieldScale scale;
 };
 
-/// The whole surface with the field's values. Triangles are divided until the field is sampled about a
-/// hundred times along the body, so that paint shows on coarse models, too. Errors: a value that isn't
-/// finite.
+/// The whole surface with the field's values, or in the neutral colour where these are one. Triangles are
+/// divided until the field is sampled about a hundred times along the body, so that paint shows on coarse
+/// models, too. Errors: a value that isn't finite.
 Result<FieldSoup> fieldSoup(const TriMesh& mesh, const std::vector<Vec3>& normals, const ScalarGrid& field,
                             const PictureSpace& space);
 

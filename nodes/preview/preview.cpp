@@ -18,7 +18,6 @@ namespace sherd {
 namespace {
 
 const Colour kInk(0.05f, 0.055f, 0.065f);
-const Colour kClay(0.62f, 0.60f, 0.57f);
 
 Result<void> checkInput(const PreviewInput& in) {
   const Fragments* f = in.pieces;
@@ -50,9 +49,11 @@ Result<void> checkParams(const PreviewInput& in, const PreviewParams& params) {
   return {};
 }
 
-/// What the ends of a panel's colours stand for.
+/// What the ends of a panel's colours stand for; `low` alone, and one neutral colour, where there is one
+/// value.
 struct Ends {
   std::string low, high;
+  bool isOne() const { return high.empty(); }
 };
 
 /// A scene, and what is written above and below it.
@@ -83,7 +84,7 @@ class PanelMaker {
   }
 
   Result<std::vector<Panel>> make() {
-    if (params_.before) SHERD_CHECK(add(wholeSoup(body_, normals_, space_, kClay), "before"));
+    if (params_.before) SHERD_CHECK(add(wholeSoup(body_, normals_, space_, neutralColour()), "before"));
     SHERD_ASSIGN(const std::vector<std::vector<Vec3>> cracks, crackNormals(*in_.pieces, exec_));
     SHERD_CHECK(add(piecesSoup(*in_.pieces, normals_, cracks, space_, params_.explode),
                     countOf(in_.pieces->pieces.size())));
@@ -109,7 +110,8 @@ class PanelMaker {
     const TriMesh& shown = *energy.tets->surface;
     const std::vector<double> densities = surfaceEnergyDensity(energy);
     const EnergyScale scale = energyScale(densities);
-    Soup soup = wholeSoup(shown, &shown == &body_ ? normals_ : shadingNormals(shown), space_, kClay);
+    Soup soup =
+        wholeSoup(shown, &shown == &body_ ? normals_ : shadingNormals(shown), space_, neutralColour());
     for (const Triangle& t : shown.triangles)
       for (const Index v : t) soup.values.push_back(scale.place(densities[at(v)]));
     SHERD_CHECK(addEnergy(std::move(soup), scale, "strain energy, J/m^3"));
@@ -124,10 +126,10 @@ class PanelMaker {
 
   Result<void> addBeta() {
     SHERD_ASSIGN(FieldSoup field, fieldSoup(body_, normals_, *in_.beta, space_));
-    if (field.scale.isOne())
-      return add(std::move(field.soup), fmt::format("fragility {:.3g} everywhere", field.scale.low));
-    return add(std::move(field.soup), "fragility",
-               Ends{fmt::format("{:.3g}", field.scale.low), fmt::format("{:.3g}", field.scale.high)});
+    const bool isOne = field.scale.isOne();
+    return add(std::move(field.soup), isOne ? "fragility everywhere" : "fragility",
+               Ends{fmt::format("{:.3g}", field.scale.low),
+                    isOne ? std::string() : fmt::format("{:.3g}", field.scale.high)});
   }
 
   const PreviewInput& in_;
@@ -151,10 +153,15 @@ struct Legend {
   }
   void draw(Picture& picture, const Ends& ends) const {
     for (int x = 0; x < width; ++x) {
-      const Rgb colour = toRgb(energyColour(static_cast<float>(x) / static_cast<float>(width - 1)));
+      const float place = static_cast<float>(x) / static_cast<float>(width - 1);
+      const Rgb colour = toRgb(ends.isOne() ? neutralColour() : energyColour(place));
       for (int y = 0; y < height; ++y) paint(picture, left + x, top + y, colour);
     }
     const int below = top + height + 2 * dots;
+    if (ends.isOne()) {
+      const int middle = left + (width - textWidth(ends.low, dots)) / 2;
+      return drawText(picture, middle, below, ends.low, dots, toRgb(kInk));
+    }
     drawText(picture, left, below, ends.low, dots, toRgb(kInk));
     drawText(picture, left + width - textWidth(ends.high, dots), below, ends.high, dots, toRgb(kInk));
   }

@@ -47,9 +47,10 @@ struct PreviewInput {
 /// cut open, what lies beyond the plane (towards +axis, where the camera is) taken away, and the energy has
 /// one more panel like that, in the same colours. Pieces have one colour each; crack faces are the pale
 /// version of it. The energy panels show the energy's density, J/m³, on a logarithmic scale up to its 99.5th
-/// percentile, over at most four decades; β's colours go evenly from its least to its greatest value. All
-/// must have their tetrahedra and surface. Errors: parameters out of range, no pieces, a slice with neither
-/// energy nor cells, a β that isn't finite, Embree fails. Cost O(pixels · samples · log triangles).
+/// percentile, over at most four decades; β's colours go evenly from its least to its greatest value; one
+/// value everywhere is a neutral grey. All must have their tetrahedra and surface. Errors: parameters out of
+/// range, no pieces, a slice with neither energy nor cells, a β that isn't finite, Embree fails. Cost
+/// O(pixels · samples · log triangles).
 Result<Picture> renderPreview(const PreviewInput& input, const PreviewParams& params, const Exec& exec);
 
 inline Result<Picture> renderPreview(const Fragments& pieces, const EnergyField* energy,

@@ -40,7 +40,7 @@ NodeType previewNode() {
                .help = "where it cuts, in the body's bounding box; what lies beyond is taken away"})
       .output<std::string>("file", "path of the PNG")
       .output<Picture>("picture", "the picture itself, for a ContactSheet")
-      .implementation(3)
+      .implementation(4)
       .writesFiles()
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         const auto pieces = io.in<Fragments>("pieces");

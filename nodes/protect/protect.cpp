@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/disjoint_sets.h"
+#include "geometry/paint_place.h"
 #include "protect/protected_tets.h"
 
 namespace sherd {
@@ -70,11 +71,13 @@ double share(const TetMesh& tets, const std::vector<char>& isProtected) {
   return inside / whole;
 }
 
-void tell(double share, std::size_t count, const ProtectedTets& found, double threshold, const Exec& exec) {
+void tell(double share, std::size_t count, const ProtectedTets& found, double threshold,
+          const ScalarGrid& field, const TetMesh& tets, const Exec& exec) {
+  const bool isMissed = !field.isConstant() && found.highest <= field.background();
   if (count == 0)
     exec.warn(
-        fmt::format("nothing is protected: the field stays below {:.4g} on the whole body ({:.4g} at most)",
-                    threshold, found.highest));
+        fmt::format("nothing is protected: the field stays below {:.4g} on the whole body ({:.4g} at most){}",
+                    threshold, found.highest, isMissed ? "; " + placeOfPaint(field, tets) : ""));
   else if (share >= 1)
     exec.warn("all of the body is protected: nothing of it can break");
   else
@@ -92,7 +95,7 @@ Result<Embedding> protect(const Embedding& embedding, const ScalarGrid& field, c
   Embedding out = embedding;
   const std::size_t count = gather(regions(tets, found.isProtected), tets, out.coordinates);
   if (exec.cancelled()) return cancelledError();
-  tell(share(tets, found.isProtected), count, found, params.threshold, exec);
+  tell(share(tets, found.isProtected), count, found, params.threshold, field, tets, exec);
   if (count > 0)
     out.diameter = (out.coordinates.rowwise().maxCoeff() - out.coordinates.rowwise().minCoeff()).norm();
   return out;

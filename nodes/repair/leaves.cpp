@@ -8,7 +8,7 @@ namespace {
 
 class Slabs {
  public:
-  Slabs(Patchwork& surface, std::span<const Index> triangles, double thickness)
+  Slabs(Patchwork& surface, std::span<const Index> triangles, double thickness, const Footing* footing)
       : surface_(surface), triangles_(triangles) {
     std::map<Index, Vec3> normals;
     for (const Index t : triangles) {
@@ -24,7 +24,8 @@ class Slabs {
     for (const auto& [v, sum] : normals) {
       const double length = sum.norm();
       const Vec3 step = length > 1e-9 ? Vec3(0.5 * thickness / length * sum) : Vec3(0, 0.5 * thickness, 0);
-      const Vec3 p = surface.positions[at(v)];
+      Vec3 p = surface.positions[at(v)];
+      if (footing != nullptr) p += footing->reach(p, step.normalized(), thickness);
       front_[v] = static_cast<Index>(surface.positions.size());
       surface.positions.push_back(p + step);
       back_[v] = static_cast<Index>(surface.positions.size());
@@ -74,8 +75,9 @@ class Slabs {
 
 }  // namespace
 
-void addSlabs(Patchwork& surface, std::span<const Index> triangles, double thickness) {
-  Slabs(surface, triangles, thickness).add();
+void addSlabs(Patchwork& surface, std::span<const Index> triangles, double thickness,
+              const Footing* footing) {
+  Slabs(surface, triangles, thickness, footing).add();
 }
 
 }  // namespace sherd

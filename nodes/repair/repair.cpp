@@ -19,6 +19,7 @@
 #include "repair/separate.h"
 #include "repair/shells.h"
 #include "repair/stitch.h"
+#include "repair/thicken.h"
 
 namespace sherd {
 namespace {
@@ -40,9 +41,15 @@ std::string length(double metres) {
   return text;
 }
 
+std::string area(double squareMetres) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g m²", squareMetres);
+  return text;
+}
+
 std::string percent(double share) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.2g %%", 100 * share);
+  std::snprintf(text, sizeof text, share < 0.1 ? "%.2g %%" : "%.0f %%", 100 * share);
   return text;
 }
 
@@ -54,7 +61,11 @@ class Ladder {
         params_(params),
         exec_(exec),
         name_(mesh.source.empty() ? "the mesh" : mesh.source.substr(mesh.source.find_last_of('/') + 1)),
-        diagonal_(boxOf(mesh.positions).diagonal()) {}
+        diagonal_(boxOf(mesh.positions).diagonal()),
+        sheets_({.thin = kSolidShare,
+                 .thickness = params.leaf * diagonal_,
+                 .touching = params.crack * diagonal_,
+                 .small = std::pow(params.smallHole * diagonal_, 2)}) {}
 
   Result<Repaired> climb() {
     report_.found = inspectSurface(given_, exec_);
@@ -122,7 +133,8 @@ class Ladder {
   /// Rungs 1 to 4.
   void mend() {
     if (const Defect twice = dropDuplicates(surface_))
-      say("left out " + counted(twice.count, "face", "faces") + " that was there twice" + near(twice.place));
+      say("left out " + counted(twice.count, "face", "faces") +
+          (twice.count == 1 ? " that was" : " that were") + " there twice" + near(twice.place));
     if (const Defect flat = dropFlat(surface_, exec_))
       say("dissolved " + counted(flat.count, "face", "faces") + " of no area" + near(flat.place));
     if (const Stitched stitched = stitch(surface_, params_.crack * diagonal_, exec_);
@@ -137,8 +149,9 @@ class Ladder {
     if (const Defect turned = makeCoherent(surface_))
       say("turned " + counted(turned.count, "face", "faces") +
           " that faced the other way than the neighbours" + near(turned.place));
+    sheets_.takeHanging(surface_, exec_);
     fill();
-    thickenLeaves();
+    thickenSheets();
     if (exec_.cancelled()) return;
     face();
   }
@@ -162,20 +175,24 @@ class Ladder {
     dropFlat(surface_, exec_);
   }
 
-  void thickenLeaves() {
-    Leaves leaves = findLeaves(surface_, kSolidShare);
-    if (leaves.parts > 0) {
-      std::vector<Index> kept;
-      for (const Index t : leaves.triangles)
-        if (!surface_.facets[at(t)].isNew) kept.push_back(t);
-      addSlabs(surface_, kept, params_.leaf * diagonal_);
-      std::vector<bool> keep(surface_.triangles.size(), true);
-      for (const Index t : leaves.triangles) keep[at(t)] = false;
-      keepOnly(surface_, keep);
-      joinEqual(surface_);
-      say(thickened(leaves.parts, leaves.place), true);
-      openings_ = openings_ > leaves.parts ? openings_ - leaves.parts : 0;  // theirs are no holes
-    }
+  void thickenSheets() {
+    const std::size_t found = sheets_.thicken(surface_, exec_);
+    openings_ = openings_ > found ? openings_ - found : 0;  // theirs are no holes
+    if (const SheetCount& strays = sheets_.strays(); strays.count > 0)
+      say("left out " + counted(strays.count, "stray sheet", "stray sheets") + " of " + area(strays.area) +
+              " on the solid, bounding nothing," + near(strays.place) + " (up to a size of " +
+              percent(params_.smallHole) + " of the object, parameter `small_hole`)",
+          true);
+    if (const SheetCount& within = sheets_.within(); within.count > 0)
+      say("left out " + counted(within.count, "sheet", "sheets") + " of " + area(within.area) +
+          " within the solid" + near(within.place));
+    if (const SheetCount& freed = sheets_.freed(); freed.count > 0)
+      say(thickened(freed.count, freed.place), true);
+    if (const SheetCount& united = sheets_.united(); united.count > 0)
+      say("made " + counted(united.count, "sheet", "sheets") + " of " + area(united.area) +
+              " that stood on the solid " + length(params_.leaf * diagonal_) + " thick and one with it" +
+              near(united.place) + " (parameter `leaf`)",
+          true);
     if (openings_ > 0)
       say("filled " + counted(openings_, "large hole", "large holes") + ", of up to " +
               length(largestOpening_.size) + " (" + percent(largestOpening_.size / diagonal_) +
@@ -183,7 +200,8 @@ class Ladder {
           true);
   }
   std::string thickened(std::size_t parts, const Vec3& place) const {
-    return "made " + counted(parts, "part", "parts") + " without a solid behind it " +
+    return "made " + counted(parts, "part", "parts") +
+           (parts == 1 ? " without a solid behind it " : " without a solid behind them ") +
            length(params_.leaf * diagonal_) + " thick" + near(place) + " (parameter `leaf`)";
   }
 
@@ -309,6 +327,7 @@ class Ladder {
   double diagonal_;
   Patchwork surface_;
   RepairReport report_;
+  LooseSheets sheets_;
   std::size_t openings_ = 0;  ///< large holes
   Hole largestOpening_;
   std::vector<Vec3> backward_;  ///< corners of what the union left out for being inside out

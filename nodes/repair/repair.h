@@ -10,7 +10,10 @@
 //   inside
 //      out (shells.h). A part within the solid that faces outward bounds nothing: `innerShells` says what
 //      becomes of it.
-//   4. Open parts without a solid behind them (leaves, cloth) get the thickness `leaf`.
+//   4. Open parts that bound nothing: those on a solid are left out where they are small or lie in it
+//   (sheets.h),
+//      the others (leaves, cloth, fins) get the thickness `leaf`, and where they stand on a solid, reach into
+//      it, so that they become one body with it (thicken.h).
 //   5. Where it meets itself, the surface becomes the boundary of what it winds around, cut exactly and
 //   rounded to
 //      doubles (hull.h). Rounding is checked: what meets after it is cut again, a few times.
@@ -46,7 +49,8 @@ struct RepairParams {
   Mode mode = Mode::Auto;
   InnerShells innerShells = InnerShells::Solid;
   double crack = 1e-5;      ///< ≥ 0, of the diagonal: open edges this close are one
-  double smallHole = 0.05;  ///< ≥ 0, of the diagonal: larger holes are filled too, but warned of
+  double smallHole = 0.05;  ///< ≥ 0, of the diagonal: larger holes are filled too, but warned of; sheets of
+                            ///< less than its square that hang on the solid or touch it are left out
   double leaf = 0.01;       ///< > 0, of the diagonal: thickness that parts without a solid behind them get
   int resolution = 128;  ///< ≥ 8: voxels along the diagonal that the level set starts with; up to 8 times as
                          ///< many where thin parts need them

@@ -28,9 +28,11 @@ NodeType repairNode() {
               {.min = 0,
                .max = 1,
                .help = "open edges closer than this share of the object's diagonal are joined"})
-      .number(
-          "small_hole", &Params::smallHole,
-          {.min = 0, .max = 1, .help = "holes above this share of the diagonal are filled with a warning"})
+      .number("small_hole", &Params::smallHole,
+              {.min = 0,
+               .max = 1,
+               .help = "holes above this share of the diagonal are filled with a warning; stray sheets on "
+                       "the solid, of less area than its square, are left out"})
       .number("leaf", &Params::leaf,
               {.min = 1e-6,
                .max = 1,
@@ -39,6 +41,7 @@ NodeType repairNode() {
                {.min = 8, .max = 2048, .help = "voxels along the diagonal, where a level set is needed"})
       // Only where a level set is the last resort. As in Tetrahedralize, which measured it.
       .uninterruptible("OpenVDB's meshToVolume", 1120)
+      .implementation(2)
       .output<TriMesh>("mesh", "closed, facing outward, free of self-intersections")
       .run([](const Params& params, NodeIo& io) -> Result<void> {
         const auto given = io.in<TriMesh>("mesh");

@@ -208,9 +208,9 @@ Defect makeCoherent(Patchwork& surface) {
   return turned;
 }
 
-Leaves findLeaves(const Patchwork& surface, double thickness) {
-  Leaves leaves;
-  for (const Part& part : partsOf(surface)) {
+std::vector<std::vector<Index>> findLeaves(const Patchwork& surface, double thickness) {
+  std::vector<std::vector<Index>> leaves;
+  for (Part& part : partsOf(surface)) {
     double area = 0;
     for (const Index t : part.triangles)
       if (!surface.facets[at(t)].isNew) area += areaOf(surface, t);
@@ -219,8 +219,7 @@ Leaves findLeaves(const Patchwork& surface, double thickness) {
                                      [&](Index t) { return surface.facets[at(t)].isNew; });
     // What was closed may be thin; what was open is a leaf if filling its border makes nothing of it.
     if (volume > (wasOpen ? thickness : 1e-12) * area * part.box.diagonal()) continue;
-    if (leaves.parts++ == 0) leaves.place = cornerOf(surface, part.triangles[0]);
-    leaves.triangles.insert(leaves.triangles.end(), part.triangles.begin(), part.triangles.end());
+    leaves.push_back(std::move(part.triangles));
   }
   return leaves;
 }

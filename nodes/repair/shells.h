@@ -11,14 +11,10 @@ namespace sherd {
 /// edge at which they don't. Counts the turned triangles. Cost O(n).
 Defect makeCoherent(Patchwork& surface);
 
-struct Leaves {
-  std::size_t parts = 0;
-  std::vector<Index> triangles;  ///< of theirs, without those that fill their holes
-  Vec3 place = Vec3::Zero();     ///< m, of the first
-};
 /// Finds parts that bound next to no volume even now that their holes are filled: less than `thickness` times
-/// their area times their diagonal. Cost O(n log n).
-Leaves findLeaves(const Patchwork& surface, double thickness);
+/// their area times their diagonal. Their triangles, ascending, those that fill their holes among them. Cost
+/// O(n log n).
+std::vector<std::vector<Index>> findLeaves(const Patchwork& surface, double thickness);
 
 struct Shells {
   Defect inverted;  ///< parts that were turned

@@ -132,9 +132,10 @@ std::vector<double> stiffnessShares(const Elements& elements) {
     }
   std::vector<double> share = mesh.insideFraction;
   for (double& s : share) s = std::max(s, kLeastShare);
+  const double least = elements.order() == ElementOrder::Linear ? kLeastSupport : kLeastQuadraticSupport;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     for (const Index n : elements.nodesOf(t))
-      if (inside[at(n)] < kLeastSupport * all[at(n)]) share[t] = std::max(share[t], kLeastSupport);
+      if (inside[at(n)] < least * all[at(n)]) share[t] = std::max(share[t], least);
   return share;
 }
 

@@ -12,7 +12,7 @@
 namespace sherd {
 
 /// Per tetrahedron, the share of its stiffness that counts: insideFraction but at least kLeastShare, or
-/// kLeastSupport where one of its element's nodes rests on less.
+/// kLeastSupport (kLeastQuadraticSupport) where one of its element's nodes rests on less.
 std::vector<double> stiffnessShares(const Elements& elements);
 
 /// Per node of the mesh, the number of its connected part; parts are numbered by their lowest node. Returns

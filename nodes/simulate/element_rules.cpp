@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "geometry/tet_share.h"
@@ -11,8 +12,9 @@ namespace {
 
 constexpr double kSameShare = 1e-6;
 
-/// Over the part inside; zero where the surface held doesn't account for insideFraction.
-ShareProducts productsInside(const TetMesh& mesh, std::size_t t) {
+}  // namespace
+
+Eigen::Matrix4d productsInside(const TetMesh& mesh, std::size_t t) {
   std::array<Vec3, 4> corners;
   for (std::size_t c = 0; c < 4; ++c) corners[c] = mesh.nodes[at(mesh.tets[t][c])];
   const std::size_t first = at(mesh.heldBegin[t]), last = at(mesh.heldBegin[t + 1]);
@@ -24,8 +26,6 @@ ShareProducts productsInside(const TetMesh& mesh, std::size_t t) {
   if (std::abs(missing - 1) < kSameShare) return p + wholeProducts();
   return ShareProducts::Zero();
 }
-
-}  // namespace
 
 ElementRules::ElementRules(const Elements& elements, std::span<const double> share, const Exec& exec)
     : mesh_(&elements.mesh()), order_(elements.order()) {
@@ -45,6 +45,11 @@ ElementRules::ElementRules(const Elements& elements, std::span<const double> sha
       rules_[1 + i] = sherd::ruleOf(p + std::max(share[t] - inside, 0.0) * wholeProducts());
     }
   });
+}
+
+ElementRules::ElementRules(const Elements& elements, std::vector<ElementRule> rules)
+    : mesh_(&elements.mesh()), order_(elements.order()), ruleOf_(rules.size()), rules_(std::move(rules)) {
+  std::iota(ruleOf_.begin(), ruleOf_.end(), 0);
 }
 
 ElementGradients ElementRules::gradients(std::span<const Vec3> nodes, std::size_t t) const {

@@ -14,6 +14,10 @@
 
 namespace sherd {
 
+/// ∫ ξ_i ξ_j / V over the part of tetrahedron t inside the surface; zero where the surface that it holds does
+/// not account for its insideFraction.
+Eigen::Matrix4d productsInside(const TetMesh& mesh, std::size_t t);
+
 class ElementRules {
  public:
   /// `share`: of each tetrahedron's stiffness that counts (stiffnessShares). What it has beyond the mesh's
@@ -21,6 +25,9 @@ class ElementRules {
   /// tetrahedron holds does not account for its insideFraction (meshes that were given fractions by hand).
   /// Cost for quadratic elements O(held triangles); unfit for use when cancelled.
   ElementRules(const Elements& elements, std::span<const double> share, const Exec& exec);
+
+  /// Of quadratic elements whose rules are known, one per tetrahedron.
+  ElementRules(const Elements& elements, std::vector<ElementRule> rules);
 
   /// Of tetrahedron t; `nodes`: of the mesh, in any unit.
   ElementGradients gradients(std::span<const Vec3> nodes, std::size_t t) const;

@@ -58,6 +58,16 @@ std::array<double, kMostElementNodes> Elements::shapeValues(const Vec4& barycent
   return values;
 }
 
+Vec4 barycentricIn(const TetMesh& mesh, Index t, const Vec3& p) {
+  const Tetra& tet = mesh.tets[at(t)];
+  const Vec3& a = mesh.nodes[at(tet[0])];
+  const Vec3 ab = mesh.nodes[at(tet[1])] - a, ac = mesh.nodes[at(tet[2])] - a,
+             ad = mesh.nodes[at(tet[3])] - a, ap = p - a;
+  const double det = ab.dot(ac.cross(ad));
+  const double b = ap.dot(ac.cross(ad)) / det, c = ab.dot(ap.cross(ad)) / det, d = ab.dot(ac.cross(ap)) / det;
+  return {1 - b - c - d, b, c, d};
+}
+
 Eigen::MatrixXd elementMass(ElementOrder order) {
   if (order == ElementOrder::Linear)
     return (Eigen::MatrixXd::Ones(4, 4) + Eigen::MatrixXd::Identity(4, 4)) / 20;

@@ -48,6 +48,9 @@ class Elements {
   std::vector<std::array<Index, 2>> edges_;
 };
 
+/// Barycentric coordinates of p in tetrahedron t.
+Vec4 barycentricIn(const TetMesh& mesh, Index t, const Vec3& p);
+
 /// ∫ N_i N_j / V of one element, in the order of nodesOf.
 Eigen::MatrixXd elementMass(ElementOrder order);
 

@@ -12,17 +12,6 @@
 namespace sherd {
 namespace {
 
-/// Barycentric coordinates of p in tetrahedron t.
-Vec4 barycentric(const TetMesh& mesh, Index t, const Vec3& p) {
-  const Tetra& tet = mesh.tets[at(t)];
-  const Vec3& a = mesh.nodes[at(tet[0])];
-  const Vec3 ab = mesh.nodes[at(tet[1])] - a, ac = mesh.nodes[at(tet[2])] - a,
-             ad = mesh.nodes[at(tet[3])] - a, ap = p - a;
-  const double det = ab.dot(ac.cross(ad));
-  const double b = ap.dot(ac.cross(ad)) / det, c = ab.dot(ap.cross(ad)) / det, d = ab.dot(ac.cross(ap)) / det;
-  return {1 - b - c - d, b, c, d};
-}
-
 double longestEdge(const std::array<Vec3, 3>& t, std::size_t& from) {
   double longest = -1;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -132,12 +121,12 @@ std::vector<PatchLoader::Sample> PatchLoader::quadrature(const Vec3& point, doub
   return samples;
 }
 
-Result<void> PatchLoader::handToNodes(const Sample& sample, const Vec3& force,
-                                      std::vector<Vec3>& nodeForce) const {
+/// The tetrahedron that holds the sample.
+Result<PointLoad> PatchLoader::located(const Sample& sample, const Vec3& force) const {
   Index best = -1;
   Vec4 share = Vec4::Constant(-std::numeric_limits<double>::infinity());
   for (std::size_t i = at(tetBegin_[at(sample.triangle)]); i < at(tetBegin_[at(sample.triangle) + 1]); ++i) {
-    const Vec4 b = barycentric(*mesh_, tetHolding_[i], sample.position);
+    const Vec4 b = barycentricIn(*mesh_, tetHolding_[i], sample.position);
     if (b.minCoeff() > share.minCoeff()) {
       share = b;
       best = tetHolding_[i];
@@ -149,18 +138,23 @@ Result<void> PatchLoader::handToNodes(const Sample& sample, const Vec3& force,
                        std::to_string(sample.position.y()) + ", " + std::to_string(sample.position.z()) +
                        ") m",
                    "the tetrahedra must enclose the surface");
-  const auto value = elements_->shapeValues(share);
-  const std::span<const Index> nodes = elements_->nodesOf(at(best));
-  for (std::size_t i = 0; i < nodes.size(); ++i) nodeForce[at(nodes[i])] += value[i] * force;
-  return {};
+  return PointLoad{best, share, force};
+}
+
+void PatchLoader::hand(std::span<const PointLoad> loads, std::vector<Vec3>& nodeForce) const {
+  for (const PointLoad& load : loads) {
+    const auto value = elements_->shapeValues(load.barycentric);
+    const std::span<const Index> nodes = elements_->nodesOf(at(load.tet));
+    for (std::size_t i = 0; i < nodes.size(); ++i) nodeForce[at(nodes[i])] += value[i] * load.force;
+  }
 }
 
 std::size_t PatchLoader::pointCount(const Vec3& point, const Vec3& force, double radius) const {
   return quadrature(point, radius, patch(point, force, radius).triangles).size();
 }
 
-Result<void> PatchLoader::add(const Vec3& point, const Vec3& force, double radius,
-                              std::vector<Vec3>& nodeForce) const {
+Result<std::vector<PointLoad>> PatchLoader::pointLoads(const Vec3& point, const Vec3& force,
+                                                       double radius) const {
   const Patch found = patch(point, force, radius);
   const std::vector<Sample> samples = quadrature(point, radius, found.triangles);
   Vec3 centre = Vec3::Zero();
@@ -176,13 +170,25 @@ Result<void> PatchLoader::add(const Vec3& point, const Vec3& force, double radiu
       samples.empty() ? Vec3::Zero() : Vec3(moment.completeOrthogonalDecomposition().solve(torque));
   // A patch along a line cannot carry a moment about it, and one of no area nothing: the
   // point itself then must.
+  std::vector<PointLoad> loads;
   if (samples.empty() || !((moment * theta - torque).norm() <= 1e-9 * force.norm()) ||
-      !(theta.norm() <= 10 * force.norm()))
-    return handToNodes({point, 1, found.seed}, force, nodeForce);
+      !(theta.norm() <= 10 * force.norm())) {
+    SHERD_ASSIGN(const PointLoad load, located({point, 1, found.seed}, force));
+    loads.push_back(load);
+    return loads;
+  }
   for (const Sample& s : samples) {
     const Vec3 x = (s.position - point - centre) / radius;
-    SHERD_CHECK(handToNodes(s, s.weight * (force + theta.cross(x)), nodeForce));
+    SHERD_ASSIGN(const PointLoad load, located(s, s.weight * (force + theta.cross(x))));
+    loads.push_back(load);
   }
+  return loads;
+}
+
+Result<void> PatchLoader::add(const Vec3& point, const Vec3& force, double radius,
+                              std::vector<Vec3>& nodeForce) const {
+  SHERD_ASSIGN(const std::vector<PointLoad> loads, pointLoads(point, force, radius));
+  hand(loads, nodeForce);
   return {};
 }
 

@@ -6,10 +6,12 @@
 #include <exception>
 #include <iterator>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "base/parallel.h"
 #include "simulate/assembly.h"
+#include "simulate/impact_refinement.h"
 #include "simulate/patch_load.h"
 #include "simulate/statics.h"
 #include "simulate/supernodal_solve.h"
@@ -70,19 +72,51 @@ Result<void> checkSolution(const StaticSolution& solution, double energy) {
   return {};
 }
 
-/// Returns the bytes that factoring took at most.
-Result<std::size_t> deform(EnergyField& field, const Impact& impact, ElementOrder order, const Exec& exec) {
+/// An impact's forces: at points of tetrahedra, and at element nodes.
+struct Load {
+  std::vector<PointLoad> points;
+  std::vector<Vec3> nodal;
+};
+
+Result<Load> loadOf(const PatchLoader& loader, std::size_t nodes, const Impact& impact) {
+  Load load{{}, std::vector<Vec3>(nodes, Vec3::Zero())};
+  for (const Contact& contact : impact.contacts) {
+    const Vec3 force = kHertzPeak / contact.duration * contact.impulse;
+    SHERD_ASSIGN(const std::vector<PointLoad> points,
+                 loader.pointLoads(contact.point, force, contact.radius));
+    loader.hand(points, load.nodal);
+    load.points.insert(load.points.end(), points.begin(), points.end());
+  }
+  return load;
+}
+
+/// Bytes that factoring took at most, and pieces that were refined.
+struct Effort {
+  std::size_t bytes, pieces;
+};
+
+Result<Effort> deform(EnergyField& field, const Impact& impact, const SimulateParams& params,
+                      const Exec& exec) {
+  const double young = field.material.youngModulus;
   SHERD_ASSIGN(const Statics statics,
-               Statics::factor(field.tets, {field.material.poissonRatio, order}, exec));
-  SHERD_ASSIGN(const std::vector<Vec3> force, impactForces(statics.elements(), impact));
+               Statics::factor(field.tets, {field.material.poissonRatio, params.elements}, exec));
+  SHERD_ASSIGN(const Load load,
+               loadOf(PatchLoader(statics.elements()), statics.elements()->nodeCount(), impact));
   if (exec.cancelled()) return cancelledError();
-  StaticSolution solution = statics.solve(force, field.material.youngModulus);
+  StaticSolution solution = statics.solve(load.nodal, young);
   SHERD_CHECK(checkSolution(solution, sumOf(solution.tetEnergy)));
+  Effort effort{statics.peakBytes(), 0};
+  if (params.refine && params.elements == ElementOrder::Quadratic) {
+    if (exec.cancelled()) return cancelledError();
+    SHERD_ASSIGN(effort.pieces,
+                 ImpactRefinement(statics).refine(impact, load.nodal, load.points, young, solution, exec));
+    SHERD_CHECK(checkSolution(solution, sumOf(solution.tetEnergy)));
+  }
   field.nodeEnergy = nodeEnergies(*field.tets, solution.tetEnergy, sharesOfBody(*statics.elements()));
   field.tetEnergy = std::move(solution.tetEnergy);
   field.displacement = std::move(solution.displacement);
   field.displacement.resize(field.tets->nodes.size());
-  return statics.peakBytes();
+  return effort;
 }
 
 double totalImpulse(const Impact& impact) {
@@ -106,36 +140,33 @@ Result<SimulateOutput> run(std::shared_ptr<const TetMesh> mesh, const SimulatePa
     exec.info(hit + formatted(": below the threshold of %.4g N·s, no strain energy", params.threshold));
     return out;
   }
-  SHERD_ASSIGN(const std::size_t bytes, deform(out.energy, out.impact, params.elements, exec));
-  exec.info(hit + formatted(": strain energy %.4g J; factorized in at most %.3g MB", totalEnergy(out.energy),
-                            1e-6 * static_cast<double>(bytes)));
+  SHERD_ASSIGN(const Effort effort, deform(out.energy, out.impact, params, exec));
+  exec.info(hit +
+            formatted(": strain energy %.4g J; factorized in at most %.3g MB", totalEnergy(out.energy),
+                      1e-6 * static_cast<double>(effort.bytes)) +
+            (effort.pieces > 0 ? formatted("; refined into %zu pieces", effort.pieces) : ""));
   return out;
 }
 
-Result<std::vector<Vec3>> forcesOf(const PatchLoader& loader, std::size_t nodes, const Impact& impact) {
-  std::vector<Vec3> force(nodes, Vec3::Zero());
-  for (const Contact& contact : impact.contacts)
-    SHERD_CHECK(
-        loader.add(contact.point, kHertzPeak / contact.duration * contact.impulse, contact.radius, force));
-  return force;
-}
-
-Result<std::vector<std::vector<Vec3>>> forcesOfAll(const PatchLoader& loader, std::size_t nodes,
-                                                   std::span<const Impact> impacts, const Exec& exec) {
-  std::vector<std::vector<Vec3>> forces(impacts.size());
-  std::vector<Result<void>> results(impacts.size());
-  parallelFor(exec, impacts.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      auto force = forcesOf(loader, nodes, impacts[i]);
-      if (force.ok())
-        forces[i] = std::move(force).value();
-      else
-        results[i] = force.error();
-    }
+/// Results of each index, in parallel; the first error.
+Result<void> forEach(const Exec& exec, std::size_t n, const std::function<Result<void>(std::size_t)>& body) {
+  std::vector<Result<void>> results(n);
+  parallelFor(exec, n, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) results[i] = body(i);
   });
   if (exec.cancelled()) return cancelledError();
   for (const Result<void>& result : results) SHERD_CHECK(result);
-  return forces;
+  return {};
+}
+
+Result<std::vector<Load>> loadsOfAll(const PatchLoader& loader, std::size_t nodes,
+                                     std::span<const Impact> impacts, const Exec& exec) {
+  std::vector<Load> loads(impacts.size());
+  SHERD_CHECK(forEach(exec, impacts.size(), [&](std::size_t i) -> Result<void> {
+    SHERD_ASSIGN(loads[i], loadOf(loader, nodes, impacts[i]));
+    return {};
+  }));
+  return loads;
 }
 
 }  // namespace
@@ -143,25 +174,34 @@ Result<std::vector<std::vector<Vec3>>> forcesOfAll(const PatchLoader& loader, st
 double totalEnergy(const EnergyField& field) { return sumOf(field.tetEnergy); }
 
 Result<std::vector<Vec3>> impactForces(std::shared_ptr<const Elements> elements, const Impact& impact) {
-  return forcesOf(PatchLoader(elements), elements->nodeCount(), impact);
+  SHERD_ASSIGN(Load load, loadOf(PatchLoader(elements), elements->nodeCount(), impact));
+  return std::move(load.nodal);
 }
 
 Result<void> eachImpactEnergy(std::shared_ptr<const TetMesh> mesh, std::span<const Impact> impacts,
-                              const Material& material, ElementOrder elements, const Exec& exec,
+                              const Material& material, ElementOrder elements, bool refine, const Exec& exec,
                               const ImpactEnergySink& sink) {
   SHERD_ASSIGN(const Statics statics, Statics::factor(mesh, {material.poissonRatio, elements}, exec));
   const PatchLoader loader(statics.elements());
   const std::vector<double> shareOfBody = sharesOfBody(*statics.elements());
+  std::optional<ImpactRefinement> refinement;
+  if (refine && elements == ElementOrder::Quadratic) refinement.emplace(statics);
+  const double young = material.youngModulus;
   for (std::size_t begin = 0; begin < impacts.size(); begin += kImpactsAtOnce) {
     const auto some = impacts.subspan(begin, std::min(kImpactsAtOnce, impacts.size() - begin));
-    SHERD_ASSIGN(const auto forces, forcesOfAll(loader, statics.elements()->nodeCount(), some, exec));
-    SHERD_ASSIGN(const std::vector<StaticSolution> solutions,
-                 statics.solveAll(forces, material.youngModulus, exec));
+    SHERD_ASSIGN(std::vector<Load> loads, loadsOfAll(loader, statics.elements()->nodeCount(), some, exec));
+    std::vector<std::vector<Vec3>> forces;
+    for (Load& load : loads) forces.push_back(std::move(load.nodal));
+    SHERD_ASSIGN(std::vector<StaticSolution> solutions, statics.solveAll(forces, young, exec));
+    for (const StaticSolution& s : solutions) SHERD_CHECK(checkSolution(s, sumOf(s.tetEnergy)));
+    if (refinement)
+      SHERD_CHECK(forEach(exec, some.size(), [&](std::size_t i) -> Result<void> {
+        SHERD_CHECK(refinement->refine(some[i], forces[i], loads[i].points, young, solutions[i], exec));
+        return checkSolution(solutions[i], sumOf(solutions[i].tetEnergy));
+      }));
     std::vector<ImpactEnergy> energies;
-    for (const StaticSolution& s : solutions) {
+    for (const StaticSolution& s : solutions)
       energies.push_back({sumOf(s.tetEnergy), nodeEnergies(*mesh, s.tetEnergy, shareOfBody)});
-      SHERD_CHECK(checkSolution(s, energies.back().total));
-    }
     SHERD_CHECK(sink(begin, std::move(energies)));
     exec.progress(static_cast<double>(begin + some.size()) / static_cast<double>(impacts.size()));
   }
@@ -170,9 +210,9 @@ Result<void> eachImpactEnergy(std::shared_ptr<const TetMesh> mesh, std::span<con
 
 Result<std::vector<ImpactEnergy>> impactEnergies(std::shared_ptr<const TetMesh> mesh,
                                                  std::span<const Impact> impacts, const Material& material,
-                                                 ElementOrder elements, const Exec& exec) {
+                                                 ElementOrder elements, bool refine, const Exec& exec) {
   std::vector<ImpactEnergy> all;
-  SHERD_CHECK(eachImpactEnergy(std::move(mesh), impacts, material, elements, exec,
+  SHERD_CHECK(eachImpactEnergy(std::move(mesh), impacts, material, elements, refine, exec,
                                [&](std::size_t, std::vector<ImpactEnergy> energies) -> Result<void> {
                                  std::move(energies.begin(), energies.end(), std::back_inserter(all));
                                  return {};

@@ -29,6 +29,9 @@ struct SimulateParams : RigidParams {
   /// Quadratic ones cost some fifteen times as much on the same tetrahedra and are worth it where energies
   /// matter to a few per cent: in bending, linear ones are too stiff unless several lie across the thickness.
   ElementOrder elements = ElementOrder::Linear;
+  /// Quadratic elements: smaller ones where the impact presses and where they would hold much of the energy
+  /// (simulate/impact_refinement.h). Linear ones are never refined.
+  bool refine = true;
 };
 
 struct SimulateOutput {
@@ -41,7 +44,8 @@ struct SimulateOutput {
 /// below the threshold: then statics are skipped. Errors: nothing is hit, by the parameter to change
 /// (whyNoImpact); those of dropUntilImpact, Statics::factor and PatchLoader::add; an energy that isn't
 /// finite, or not to be had since the body is too flat or hangs together by too little. Cost: the
-/// factorization, O(nodes²) at most and most of the time; O(triangles) per contact.
+/// factorization, O(nodes²) at most and most of the time; O(triangles) per contact; refinement some ten
+/// back-substitutions and the factorization of what is refined.
 Result<SimulateOutput> simulate(std::shared_ptr<const TetMesh> mesh, const SimulateParams& params,
                                 const Exec& exec);
 
@@ -59,18 +63,19 @@ using ImpactEnergySink = std::function<Result<void>(std::size_t first, std::vect
 
 /// The energies that simulate() finds for these impacts, to the bit (total: that of `work` up to rounding),
 /// with one factorization and blocks of kSolveWidth back-substitutions: for training on a thousand impacts of
-/// a body. `sink` is called with some of them at a time, in their order, by the calling thread. Impacts that
-/// hit nothing have no energy. Errors: those of `sink`, Statics::factor and PatchLoader::add; an energy that
-/// isn't finite, or not to be had since the body is too flat or hangs together by too little; cancelled.
-/// Memory beyond the factor: O(nodes) for each of some hundred impacts.
+/// a body. What is refined is refined for each impact on its own. `sink` is called with some of them at a
+/// time, in their order, by the calling thread. Impacts that hit nothing have no energy. Errors: those of
+/// `sink`, Statics::factor and PatchLoader::add; an energy that isn't finite, or not to be had since the body
+/// is too flat or hangs together by too little; cancelled. Memory beyond the factor: O(nodes) for each of
+/// some hundred impacts.
 Result<void> eachImpactEnergy(std::shared_ptr<const TetMesh> mesh, std::span<const Impact> impacts,
-                              const Material& material, ElementOrder elements, const Exec& exec,
+                              const Material& material, ElementOrder elements, bool refine, const Exec& exec,
                               const ImpactEnergySink& sink);
 
 /// The same, all at once.
 Result<std::vector<ImpactEnergy>> impactEnergies(std::shared_ptr<const TetMesh> mesh,
                                                  std::span<const Impact> impacts, const Material& material,
-                                                 ElementOrder elements, const Exec& exec);
+                                                 ElementOrder elements, bool refine, const Exec& exec);
 
 /// J: total strain energy.
 double totalEnergy(const EnergyField& field);

@@ -21,6 +21,7 @@ struct Params {
   double contactDuration = defaults.contactDuration, contactRadius = defaults.contactRadius;
   double timeStep = defaults.timeStep, maxTime = defaults.maxTime, threshold = defaults.threshold;
   ElementOrder elements = defaults.elements;
+  bool refine = defaults.refine;
 
   SimulateParams forStep() const {
     SimulateParams p;
@@ -47,6 +48,7 @@ struct Params {
     p.maxTime = maxTime;
     p.threshold = threshold;
     p.elements = elements;
+    p.refine = refine;
     return p;
   }
 };
@@ -118,6 +120,10 @@ void addElements(Builder& node) {
       {{"linear", ElementOrder::Linear}, {"quadratic", ElementOrder::Quadratic}},
       "linear: a node at every corner of a tetrahedron; quadratic: one more in the middle of every edge, for "
       "some fifteen times the time on the same tetrahedra, and bodies that bend are no longer too stiff");
+  node.boolean(
+      "refine", &Params::refine,
+      "quadratic elements: computes as if tetrahedra were smaller where the hit presses and where much "
+      "of the energy is, for energies within some 5 % at 5,000 tetrahedra; linear ones stay as they are");
 }
 
 void addContact(Builder& node) {

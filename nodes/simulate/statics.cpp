@@ -104,8 +104,8 @@ Result<Statics> Statics::factor(std::shared_ptr<const TetMesh> mesh, const Stati
   SHERD_CHECK(checkHinges(*mesh, partOf, partCount));
 
   const auto elements = std::make_shared<const Elements>(mesh, params.elements);
-  std::vector<double> stiffnessVolume = stiffnessShares(*elements), volume;
-  ElementRules rules(*elements, stiffnessVolume, exec);
+  std::vector<double> share = stiffnessShares(*elements), stiffnessVolume = share, volume;
+  ElementRules rules(*elements, share, exec);
   if (exec.cancelled()) return cancelledError();
   for (std::size_t t = 0; t < mesh->tets.size(); ++t) {
     volume.push_back(Element(nodes, mesh->tets[t]).volume);
@@ -122,6 +122,7 @@ Result<Statics> Statics::factor(std::shared_ptr<const TetMesh> mesh, const Stati
   SHERD_ASSIGN(SparseCholesky cholesky, SparseCholesky::factor(stiffness, order));
 
   Statics statics(elements, std::move(rules), std::move(cholesky));
+  statics.share_ = std::move(share);
   statics.size_ = size;
   statics.lame_ = lame;
   statics.split_ = split;

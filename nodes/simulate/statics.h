@@ -46,6 +46,11 @@ namespace sherd {
 /// stiffness with the third).
 inline constexpr double kLeastSupport = 0.02;
 
+/// The same for quadratic elements. Such a layer around the body is a foam glued to it, which resists bending
+/// with the third power of its thickness: around an ear 2 % of the stiffness take a third of the energy,
+/// 0.01 % nothing that could be measured. Elements that are integrated over their part inside need no more.
+inline constexpr double kLeastQuadraticSupport = 1e-4;
+
 /// The least share of stiffness that any tetrahedron has. Nodes may rest on enough and two groups of them
 /// still hang together by next to nothing, or by tetrahedra wholly outside: that is held up here, so that no
 /// motion of the parts is free. It is what would be left of a neck of a thousandth of a tetrahedron's width.
@@ -108,6 +113,7 @@ class Statics {
   std::size_t peakBytes() const { return cholesky_.peakBytes(); }
 
  private:
+  friend class LocalRefinement;  // corrects solutions in a part of the body, by the same matrices
   /// A connected part's rigid modes: three translations, and three rotations about `centre`.
   struct Part {
     Vec3 centre = Vec3::Zero();               ///< of mass, in units of size_
@@ -144,6 +150,7 @@ class Statics {
 
   std::shared_ptr<const Elements> elements_;
   ElementRules rules_;
+  std::vector<double> share_;  ///< per tetrahedron, of its stiffness that counts (stiffnessShares)
   SparseCholesky cholesky_;
   double size_ = 1;
   Lame lame_{0, 0};  ///< for E = 1

@@ -35,23 +35,34 @@ bool loseCorner(Triangle& t, std::span<const Index> same) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/// The one layer that a stack amounts to; empty where it amounts to nothing. False where it is more than one.
-bool combine(std::span<const Layer> stack, std::optional<Layer>& out) {
+std::vector<Layer> withoutPairs(std::span<const Layer> stack) {
+  std::vector<Layer> left;
+  for (const Layer& l : stack) {
+    const auto opposite =
+        std::ranges::find_if(left, [&](const Layer& o) { return o.below == l.above && o.above == l.below; });
+    if (opposite == left.end())
+      left.push_back(l);
+    else
+      left.erase(opposite);
+  }
+  return left;
+}
+
+/// The one layer that a stack amounts to, none where it amounts to nothing; where it is more, what is left
+/// when layers that undo each other are taken away.
+std::vector<Layer> combined(std::span<const Layer> stack) {
   std::map<Index, int> surplus;  // how often a cell lies below, less how often above
   for (const Layer& l : stack) ++surplus[l.below], --surplus[l.above];
-  std::optional<Index> below, above;
-  for (const auto& [cell, count] : surplus) {
-    if (count == 0) continue;
-    std::optional<Index>& end = count > 0 ? below : above;
-    if (end || std::abs(count) > 1) return false;
-    end = cell;
-  }
-  if (!below) return true;
-  out = Layer{stack[0].corners, *above, *below, -1};
-  if (out->isSkin())
+  std::erase_if(surplus, [](const auto& s) { return s.second == 0; });
+  if (surplus.empty()) return {};
+  const auto [one, oneCount] = *surplus.begin();
+  const auto [other, otherCount] = *surplus.rbegin();
+  if (surplus.size() > 2 || std::abs(oneCount) > 1) return withoutPairs(stack);
+  Layer result{stack[0].corners, oneCount > 0 ? other : one, oneCount > 0 ? one : other, -1};
+  if (result.isSkin())
     for (const Layer& l : stack)
-      if (l.source >= 0) out->source = l.source;
-  return true;
+      if (l.source >= 0) result.source = l.source;
+  return {result};
 }
 
 class LayerRemover {
@@ -68,13 +79,13 @@ class LayerRemover {
     std::erase_if(meshes_.sheet.triangles, [&](SheetTriangle& t) { return loseCorner(t.corners, a_.same); });
     gather();
     std::sort(layers_.begin(), layers_.end());
-    std::map<Triangle, std::optional<Layer>> replaced;
+    std::map<Triangle, std::vector<Layer>> replaced;
     for (std::size_t first = 0; first < layers_.size();) {
       std::size_t last = first + 1;
       while (last < layers_.size() && layers_[last].corners == layers_[first].corners) ++last;
-      std::optional<Layer> result;
-      if (last - first > 1 && combine(std::span(layers_).subspan(first, last - first), result))
-        replaced[layers_[first].corners] = result;
+      if (last - first > 1)
+        if (auto left = combined(std::span(layers_).subspan(first, last - first)); left.size() < last - first)
+          replaced[layers_[first].corners] = std::move(left);
       first = last;
     }
     if (!replaced.empty()) replace(replaced);
@@ -98,7 +109,7 @@ class LayerRemover {
                                   static_cast<Index>(s)));
   }
 
-  void replace(const std::map<Triangle, std::optional<Layer>>& replaced) {
+  void replace(const std::map<Triangle, std::vector<Layer>>& replaced) {
     const auto goes = [&](Triangle t) {
       if (!mayCoincide(t)) return false;
       std::sort(t.begin(), t.end());
@@ -108,16 +119,19 @@ class LayerRemover {
     std::erase_if(meshes_.sheet.triangles, [&](const SheetTriangle& t) { return goes(t.corners); });
     for (std::size_t s = 0; s < a_.surface.size(); ++s)
       if (!isCut_[s] && goes(a_.surface[s])) isCut_[s] = 1;
-    for (const auto& [corners, layer] : replaced) {
-      if (!layer) continue;
-      const Triangle turned{corners[0], corners[2], corners[1]};
-      if (!layer->isSkin())
-        meshes_.sheet.triangles.push_back({corners, layer->above, layer->below});
-      else if (layer->above == kOutsideCell)
-        meshes_.skin.triangles.push_back({corners, layer->source, layer->below});
-      else
-        meshes_.skin.triangles.push_back({turned, layer->source, layer->above});
-    }
+    for (const auto& [corners, layers] : replaced)
+      for (const Layer& layer : layers) add(layer);
+  }
+
+  void add(const Layer& layer) {
+    const Triangle& corners = layer.corners;
+    const Triangle turned{corners[0], corners[2], corners[1]};
+    if (!layer.isSkin())
+      meshes_.sheet.triangles.push_back({corners, layer.above, layer.below});
+    else if (layer.above == kOutsideCell)
+      meshes_.skin.triangles.push_back({corners, layer.source, layer.below});
+    else
+      meshes_.skin.triangles.push_back({turned, layer.source, layer.above});
   }
 
   const Arrangement& a_;

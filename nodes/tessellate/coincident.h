@@ -11,8 +11,8 @@ constexpr Index kOutsideCell = -1;
 /// what is left closes as before. Where a layer of a cell has become so thin that the triangles on its two
 /// sides have the same three corners, the layer goes: what lies on one side of it then touches what lies on
 /// the other (or the outside, if the layer was the skin). `isCut`: per surface triangle; those that a layer
-/// covered are marked, and what takes their place is in the skin. A stack that amounts to more than one layer
-/// stays as it is. Cost O(surface) where vertices were taken together, nothing else.
+/// covered are marked, and what takes their place is in the skin. Of a stack that amounts to more than one
+/// layer those go that undo each other. Cost O(surface) where vertices were taken together, nothing else.
 void removeThinLayers(const Arrangement& arrangement, ClippedMeshes& meshes,
                       std::vector<unsigned char>& isCut);
 

@@ -8,7 +8,23 @@ namespace {
 
 std::string parts(std::size_t count) { return count == 1 ? "1 part" : fmt::format("{} parts", count); }
 
-void report(const Fragments& f, const Exec& exec) {
+/// The bound below which parts are merged, as the user set it.
+std::string bound(const Fragments& f, const TessellateParams& params) {
+  double volume = 0;
+  for (const Piece& piece : f.pieces) volume += piece.volume;
+  if (params.minVolumeAbsolute > params.minVolume * volume)
+    return fmt::format("min_volume_absolute = {:.6g} m³", params.minVolumeAbsolute);
+  return fmt::format("min_volume = {:.6g} ({:.3g} m³)", params.minVolume, params.minVolume * volume);
+}
+
+void report(const Fragments& f, const TessellateParams& params, const Exec& exec) {
+  if (f.pieces.size() == 1 && f.counts.mergedParts > 0) {
+    exec.warn(fmt::format(
+        "{} of {} cells were cut, and all merged into one again, since they are below {}: the body "
+        "stays one piece; lower it",
+        parts(f.counts.mergedParts + 1), f.sites, bound(f, params)));
+    return;
+  }
   if (f.pieces.size() == 1) {
     exec.info("nothing was cut: the body stays one piece");
     return;
@@ -17,9 +33,10 @@ void report(const Fragments& f, const Exec& exec) {
                         f.pieces.size(), f.sites, f.counts.cutTets, f.tets->tets.size(),
                         f.counts.cutSurfaceTriangles, f.tets->surface->triangles.size()));
   if (f.counts.detachedParts > 0)
-    exec.info(fmt::format("{} detached from the rest of their cells", parts(f.counts.detachedParts)));
+    exec.info(fmt::format("{} detached from the rest of {}", parts(f.counts.detachedParts),
+                          f.counts.detachedParts == 1 ? "its cell" : "their cells"));
   if (f.counts.mergedParts > 0)
-    exec.info(fmt::format("{} below min_volume joined a neighbour", parts(f.counts.mergedParts)));
+    exec.info(fmt::format("{} below {} joined a neighbour", parts(f.counts.mergedParts), bound(f, params)));
   if (f.counts.forcedTriangles > 0)
     exec.warn(
         fmt::format("{} triangles came out flat or overlapping after rounding", f.counts.forcedTriangles));
@@ -50,7 +67,7 @@ NodeType tessellateNode() {
       .number("min_volume_absolute", &TessellateParams::minVolumeAbsolute,
               {.unit = "m³", .min = 0, .help = "the same as a volume; the larger of the two counts"})
       .output<Fragments>("pieces", "closed pieces, each with its outer skin and its crack faces")
-      .implementation(5)
+      .implementation(6)
       .run([](const TessellateParams& params, NodeIo& io) -> Result<void> {
         const auto cells = io.in<Partition>("cells");
         if (const auto mesh = io.in<TriMesh>("mesh")) {
@@ -61,7 +78,7 @@ NodeType tessellateNode() {
                            "mesh");
         }
         SHERD_ASSIGN(Fragments pieces, tessellate(*cells, params, io.exec()));
-        report(pieces, io.exec());
+        report(pieces, params, io.exec());
         io.out("pieces", std::move(pieces));
         return {};
       });

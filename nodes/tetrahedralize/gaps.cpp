@@ -1,7 +1,8 @@
 #include "tetrahedralize/gaps.h"
 
+#include <algorithm>
 #include <cmath>
-#include <optional>
+#include <limits>
 #include <set>
 
 #include "base/parallel.h"
@@ -66,6 +67,67 @@ std::vector<Gap> findGaps(std::span<const Vec3> positions, std::span<const Trian
       gaps.push_back({looks[i].from, seen[i]->point, seen[i]->distance,
                       patches.distance(looks[i].triangle, seen[i]->triangle, search.farthest)});
   return gaps;
+}
+
+namespace {
+
+/// A shell with what is asked of it.
+class Body {
+ public:
+  Body(std::span<const Vec3> positions, std::span<const Triangle> triangles, const Shell& shell)
+      : positions_(positions) {
+    for (const Index t : shell.triangles) {
+      own_.push_back(triangles[at(t)]);
+      for (const Index v : own_.back()) vertices.push_back(v);
+    }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    for (const Index v : vertices) box.add(positions[at(v)]);
+  }
+  const SurfaceTree& tree() {
+    if (!tree_) tree_.emplace(positions_, own_);
+    return *tree_;
+  }
+  std::vector<Index> vertices;
+  Box box;
+
+ private:
+  std::span<const Vec3> positions_;
+  std::vector<Triangle> own_;
+  std::optional<SurfaceTree> tree_;
+};
+
+double distanceTo(const Box& box, const Vec3& p) {
+  return (p - p.cwiseMax(box.low).cwiseMin(box.high)).norm();
+}
+
+double distanceBetween(const Box& a, const Box& b) {
+  return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
+}
+
+}  // namespace
+
+std::optional<Gap> narrowestBetweenBodies(std::span<const Vec3> positions,
+                                          std::span<const Triangle> triangles,
+                                          const std::vector<Shell>& shells, double touching,
+                                          const Exec& exec) {
+  std::vector<Body> bodies;
+  for (const Shell& shell : shells)
+    if (shell.volume > 0) bodies.emplace_back(positions, triangles, shell);
+  std::optional<Gap> best;
+  const auto isNarrower = [&](double width) { return !best || width < best->width; };
+  for (std::size_t a = 0; a < bodies.size(); ++a)
+    for (std::size_t b = 0; b < bodies.size() && !exec.cancelled(); ++b) {
+      if (a == b || !isNarrower(distanceBetween(bodies[a].box, bodies[b].box))) continue;
+      for (const Index v : bodies[a].vertices) {
+        const Vec3& p = positions[at(v)];
+        if (!isNarrower(distanceTo(bodies[b].box, p))) continue;
+        const SurfacePoint nearest = bodies[b].tree().closest(p);
+        if (nearest.distance > touching && isNarrower(nearest.distance))
+          best = Gap{p, nearest.point, nearest.distance, std::numeric_limits<double>::infinity()};
+      }
+    }
+  return best;
 }
 
 }  // namespace sherd

@@ -1,10 +1,12 @@
 // Where a surface faces another part of itself across empty space, how far, and how long the way round is.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/exec.h"
+#include "tetrahedralize/shells.h"
 #include "types/vec.h"
 
 namespace sherd {
@@ -29,5 +31,13 @@ struct GapSearch {
 /// triangles).
 std::vector<Gap> findGaps(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                           const GapSearch& search, const Exec& exec);
+
+/// The shortest way between two bodies (shells of positive volume) through the outside, from a vertex of one,
+/// among those longer than `touching`; none for a single body. Cost O(n log n) and more where very many
+/// bodies are near each other.
+std::optional<Gap> narrowestBetweenBodies(std::span<const Vec3> positions,
+                                          std::span<const Triangle> triangles,
+                                          const std::vector<Shell>& shells, double touching,
+                                          const Exec& exec);
 
 }  // namespace sherd

@@ -128,14 +128,6 @@ std::vector<std::pair<bool, int>> topologyOf(const std::vector<Shell>& shells) {
   return topology;
 }
 
-std::size_t countContacts(std::span<const Vec3> positions) {
-  std::vector<std::array<double, 3>> places;
-  places.reserve(positions.size());
-  for (const Vec3& p : positions) places.push_back({p.x(), p.y(), p.z()});
-  std::sort(places.begin(), places.end());
-  return places.size() - static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
-}
-
 bool enclosesTopology(const std::vector<std::pair<bool, int>>& got,
                       const std::vector<std::pair<bool, int>>& wanted, std::size_t contacts) {
   if (got == wanted) return true;
@@ -169,6 +161,11 @@ Counts countsOf(const std::vector<std::pair<bool, int>>& topology) {
 }
 
 }  // namespace
+
+bool joinsSome(const std::vector<std::pair<bool, int>>& got,
+               const std::vector<std::pair<bool, int>>& wanted) {
+  return countsOf(got).components < countsOf(wanted).components;
+}
 
 bool joinsNoBodies(const std::vector<std::pair<bool, int>>& got,
                    const std::vector<std::pair<bool, int>>& wanted) {

@@ -25,13 +25,13 @@ Result<std::vector<Shell>> splitShells(std::span<const Vec3> positions, std::spa
 /// Which shells a surface has, comparable between a surface and its cage: sorted (is a void, Euler
 /// characteristic).
 std::vector<std::pair<bool, int>> topologyOf(const std::vector<Shell>& shells);
-/// Vertices at the very place of another: how often parts of the surface touch in a point or along an edge,
-/// each with vertices of its own. Whatever encloses the surface joins them there.
-std::size_t countContacts(std::span<const Vec3> positions);
-/// Is `got` the topology of something that closely encloses a surface of topology `wanted`? With contacts:
+/// Is `got` the topology of something that closely encloses a surface of topology `wanted`? With contacts
+/// (contacts.h):
 /// may each of them have joined two components or closed a handle.
 bool enclosesTopology(const std::vector<std::pair<bool, int>>& got,
                       const std::vector<std::pair<bool, int>>& wanted, std::size_t contacts);
+/// Fewer components?
+bool joinsSome(const std::vector<std::pair<bool, int>>& got, const std::vector<std::pair<bool, int>>& wanted);
 /// As many components, and no void filled?
 bool joinsNoBodies(const std::vector<std::pair<bool, int>>& got,
                    const std::vector<std::pair<bool, int>>& wanted);

@@ -6,6 +6,8 @@
 #include <queue>
 #include <tuple>
 
+#include "tetrahedralize/contacts.h"
+
 namespace sherd {
 namespace {
 
@@ -37,7 +39,8 @@ void splitTriangle(const Triangle& t, const std::array<Index, 3>& middle, std::v
                {Triangle{a, ab, ca}, Triangle{ab, b, bc}, Triangle{ca, bc, c}, Triangle{ab, bc, ca}});
 }
 
-/// Where parts of the surface touch, each has a vertex of its own: no way at all from one to the other.
+/// Where parts of the surface touch, or as good as, each has a vertex of its own: no way at all from one to
+/// the other.
 void linkTouching(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                   const std::vector<Index>& patchOf, std::vector<std::pair<Index, Index>>& links) {
   std::vector<std::pair<std::array<double, 3>, Index>> places;
@@ -50,6 +53,13 @@ void linkTouching(std::span<const Vec3> positions, std::span<const Triangle> tri
   for (std::size_t i = 0; i + 1 < places.size(); ++i)
     if (const Index a = places[i].second, b = places[i + 1].second;
         places[i].first == places[i + 1].first && a != b)
+      links.insert(links.end(), {{a, b}, {b, a}});
+  std::vector<Index> patchAt(positions.size(), -1);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (const Index v : triangles[t]) patchAt[at(v)] = patchOf[t];
+  for (const auto& [v, w] : nearPairs(positions, kTouching))
+    if (const Index a = patchAt[at(v)], b = patchAt[at(w)];
+        a >= 0 && b >= 0 && a != b && positions[at(v)] != positions[at(w)])
       links.insert(links.end(), {{a, b}, {b, a}});
 }
 

@@ -21,7 +21,8 @@ RefinedSurface refineLongEdges(std::span<const Vec3> positions, std::span<const 
 /// the centres of patches, and errs by about the size of one. Triangles should be smaller than that.
 class SurfacePatches {
  public:
-  /// `touching`: parts of the surface meet in vertices at one place, and ways lead through there.
+  /// `touching`: parts of the surface meet in vertices at one place, or nearer than kTouching (contacts.h),
+  /// and ways lead through there.
   SurfacePatches(std::span<const Vec3> positions, std::span<const Triangle> triangles, double size,
                  bool touching = false);
 

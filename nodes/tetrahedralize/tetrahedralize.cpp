@@ -8,6 +8,7 @@
 
 #include "geometry/surface_links.h"
 #include "tetrahedralize/cage_field.h"
+#include "tetrahedralize/contacts.h"
 #include "tetrahedralize/enclosure.h"
 #include "tetrahedralize/inside_share.h"
 #include "tetrahedralize/unit_surface.h"
@@ -57,11 +58,11 @@ class CageBuilder {
         exec_(exec),
         tree_(surface_.positions, surface_.triangles),
         wanted_(topologyOf(surface_.shells)),
-        contacts_(countContacts(mesh_->positions)) {}
+        contacts_(countContacts(mesh_->positions, mesh_->triangles, kTouching * surface_.size)) {}
 
   Result<TetMesh> build() {
     SHERD_ASSIGN(std::optional<TetMesh> cage, attempt());
-    if (!cage && !bridgesAreNarrow_ && !isSpareNear()) {
+    if (!cage && !bridgesAreNarrow_ && !isTooNarrow_ && !isSpareNear()) {
       // What is thin or near to another part of the surface at this resolution is less so at a higher one.
       exec_.info("meshing again with more tetrahedra: " + problem_->what);
       params_.tets = static_cast<int>(std::min(kMoreTets * params_.tets, kMostAskedFor));
@@ -118,7 +119,7 @@ class CageBuilder {
       SHERD_ASSIGN(bool good, verify(cage));
       if (exec_.cancelled()) return cancelledError();
       if (good) return std::optional(std::move(cage));
-      if (isHopeless()) break;
+      if (isTooNarrow_ || isHopeless()) break;
       exec_.info("meshing again, more finely: " + problem_->what);
       SHERD_ASSIGN(mesh, meshOnce());
     }
@@ -152,6 +153,11 @@ class CageBuilder {
     return fmt::format("the gap of {:.3g} m at {} m", gap.width * surface_.size,
                        placeText(surface_.toMetres(gap.middle())));
   }
+
+  static std::string edgesText(double metres) {
+    return fmt::format("edges of about {:.2g} m there would keep it open", metres);
+  }
+  std::string edgesText(const Gap& gap) const { return edgesText(kEdgeOfGap * gap.width * surface_.size); }
 
   /// Points a whole edge apart can be too few for Mesh_3 to see what is thin and small between them.
   Result<VolumeMesh> meshOnce() {
@@ -190,8 +196,8 @@ class CageBuilder {
     if (narrowest == sizes_.open.end())
       return failure(fmt::format("about {:.0f} tetrahedra would be needed", expected),
                      "ask for a longer edge or more tetrahedra", "mesh");
-    return failure(fmt::format("{} cannot be kept open: that would take about {:.0f} tetrahedra",
-                               gapText(*narrowest), expected),
+    return failure(fmt::format("{} cannot be kept open: {}, about {:.0f} tetrahedra in all",
+                               gapText(*narrowest), edgesText(*narrowest), expected),
                    "close or widen the gap in the model, or ask for more tetrahedra", "mesh");
   }
 
@@ -291,7 +297,7 @@ class CageBuilder {
   bool wantOpenGaps(const TetMesh& cage) {
     const std::vector<Gap> closed = closedGaps(cage, sizes_.open);
     if (closed.empty()) return true;
-    problem_ = failure(gapText(closed.front()) + " could not be kept open",
+    problem_ = failure(gapText(closed.front()) + " could not be kept open: " + edgesText(closed.front()),
                        "widen or close it in the model, or ask for more tetrahedra", "mesh");
     for (const Gap& gap : closed) addFiner(gap.middle(), 0.6);
     return false;
@@ -299,6 +305,7 @@ class CageBuilder {
 
   bool wantTopology(const TetMesh& cage, const std::vector<std::pair<bool, int>>& got) {
     offBy_.push_back(topologyDifference(got, wanted_));
+    if (joinsSome(got, wanted_)) return wantBodiesApart(cage, got);
     const bool bridged = refineBridges(cage);
     problem_ =
         failure(fmt::format("the cage has {} where the surface has {}{}", describeTopology(got),
@@ -307,11 +314,32 @@ class CageBuilder {
                                   : "widen or close narrow gaps and holes in the model, or ask for more "
                                     "tetrahedra",
                 "mesh");
+    return wantFiner(bridged);
+  }
+
+  /// Where the cage spans no gap it can be told to keep to the surface.
+  bool wantFiner(bool bridged) {
     if (bridged) return false;
     if (smallGapsToo_) sizes_.closeness *= 0.6;
     smallGapsToo_ = true;
     chooseGaps();
     return false;
+  }
+
+  /// The cage joins bodies. Between some there may be no room for it, however fine it is.
+  bool wantBodiesApart(const TetMesh& cage, const std::vector<std::pair<bool, int>>& got) {
+    if (!between_)
+      between_ =
+          narrowestBetweenBodies(surface_.positions, surface_.triangles, surface_.shells, kTouching, exec_);
+    isTooNarrow_ = between_ && between_->width < kHopelessWidth * nominal_;
+    const bool bridged = !isTooNarrow_ && refineBridges(cage);
+    problem_ = failure(
+        fmt::format(
+            "the cage has {} where the surface has {}{}", describeTopology(got), describeTopology(wanted_),
+            between_ ? "; it closes " + gapText(*between_) + " between two bodies: " + edgesText(*between_)
+                     : ""),
+        "join the bodies or move them apart in the model, or ask for a shorter `edge_length`", "mesh");
+    return isTooNarrow_ ? false : wantFiner(bridged);
   }
 
   std::string closedGapText(const TetMesh& cage) const {
@@ -321,19 +349,24 @@ class CageBuilder {
       if ((narrowest == nullptr || gap.width < narrowest->width) &&
           boundary.contains(surface_.toMetres(gap.middle())))
         narrowest = &gap;
-    return narrowest == nullptr ? "" : "; " + gapText(*narrowest) + " is closed";
+    if (narrowest != nullptr) return "; " + gapText(*narrowest) + " is closed: " + edgesText(*narrowest);
+    if (!bridge_) return "";
+    const double width = 2 * tree_.closest(*bridge_).distance * surface_.size;
+    return fmt::format("; the gap of about {:.3g} m at {} m is closed: {}", width,
+                       placeText(surface_.toMetres(*bridge_)), edgesText(kEdgeOfGap * width));
   }
 
   /// Asks for finer meshing where the cage lies clearly outside the level set, as where it spans a gap.
   bool refineBridges(const TetMesh& cage) {
     std::size_t bridges = 0, narrow = 0;
+    bridge_.reset();
     for (const Tetra& t : cage.tets)
       for (const auto& e : kTetraEdge) {
         const Vec3 middle = 0.5 * (cage.nodes[at(t[static_cast<std::size_t>(e[0])])] +
                                    cage.nodes[at(t[static_cast<std::size_t>(e[1])])]);
         const Vec3 x = (middle - surface_.centre) / surface_.size;
         if (!((*field_)(x) > 0.5 * field_->offset(x))) continue;
-        ++bridges;
+        if (bridges++ == 0) bridge_ = x;
         if (field_->edgeLength(x) < kNarrow * nominal_) ++narrow;
         addFiner(x, 0.6);
       }
@@ -354,7 +387,8 @@ class CageBuilder {
     return cage;
   }
 
-  static constexpr double kMostAskedFor = 5e6;  ///< tetrahedra
+  static constexpr double kMostAskedFor = 5e6;         ///< tetrahedra
+  static constexpr double kHopelessWidth = 1.0 / 500;  ///< nominal edge lengths of a gap between bodies
   static constexpr double kNarrow = 0.25;      ///< nominal edge lengths that an edge in a gap is shorter than
   static constexpr double kLargestEdge = 1.5;  ///< nominal edge lengths that the search may go up to
 
@@ -374,6 +408,9 @@ class CageBuilder {
   std::optional<Error> problem_;
   std::vector<int> offBy_;  ///< what topology was off by, each time that it was
   bool bridgesAreNarrow_ = false;
+  std::optional<Vec3> bridge_;    ///< a place where the last cage spanned a gap
+  std::optional<Gap> between_;    ///< the narrowest between two bodies, once it was looked for
+  bool isTooNarrow_ = false;      ///< for any cage with about as many tetrahedra
   std::optional<TetMesh> spare_;  ///< with other handles or voids than the surface, but sound
   std::vector<std::pair<bool, int>> spareTopology_;
 };

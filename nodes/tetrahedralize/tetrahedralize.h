@@ -31,7 +31,8 @@
 //    it bridges notches and holes that are smaller than its edges, wholly or in part. A warning says so.
 //
 // Parts of the surface may touch in a point or along an edge, each with vertices of its own there (as
-// SelectPiece makes them): the cage joins them, so there its topology may be that of the joined parts.
+// SelectPiece makes them, or 1e-6 of the diagonal apart, as Repair does): the cage joins them, so there its
+// topology may be that of the joined parts (contacts.h).
 #pragma once
 
 #include <memory>
@@ -58,9 +59,10 @@ struct TetrahedralizeParams {
 ///
 /// Errors: more than 5 million tetrahedra asked for; edges that no tetrahedron of the body has room for; an
 /// empty, open, non-manifold or inside-out surface or one with NaN; a gap that cannot be kept open, with its
-/// place (m) and width (m); a surface that could not be enclosed, with the place. Deterministic: the same
-/// input gives the same bits for any number of threads. Cost: a few Mesh_3 runs of O(tets) each (about a
-/// second for 5,000), plus O(triangles log triangles).
+/// place (m), its width (m) and the edge length (m) that would keep it open, at once where bodies are too
+/// near for any cage; a surface that could not be enclosed, with the place. Deterministic: the same input
+/// gives the same bits for any number of threads. Cost: a few Mesh_3 runs of O(tets) each (about a second for
+/// 5,000), plus O(triangles log triangles).
 Result<TetMesh> tetrahedralize(std::shared_ptr<const TriMesh> surface, const TetrahedralizeParams& params,
                                const Exec& exec);
 

@@ -22,7 +22,7 @@ NodeType tetrahedralizeNode() {
       // bunny's 163,582 triangles; half of that passes on two idle cores.
       .uninterruptible("OpenVDB's meshToVolume", 1120)
       .output<TetMesh>("tets", "the cage, with what of the surface each tetrahedron holds")
-      .implementation(3)
+      .implementation(4)
       .run([](const TetrahedralizeParams& params, NodeIo& io) -> Result<void> {
         SHERD_ASSIGN(TetMesh cage, tetrahedralize(io.in<TriMesh>("mesh"), params, io.exec()));
         io.out("tets", std::move(cage));

@@ -156,7 +156,7 @@ Result<void> Examples::findEnergies(Phases& phases, const Exec& exec) {
   const Material& material = params_.drop.body;
   std::vector<Digest> keys(loads_.size());
   SHERD_CHECK(forEach(quiet(exec), loads_.size(), [&](std::size_t i) -> Result<void> {
-    keys[i] = energyKey(body_, material, params_.drop.elements, digestOfLoad(loads_[i].unit));
+    keys[i] = energyKey(body_, params_.drop, digestOfLoad(loads_[i].unit));
     if (auto known = recall<KeptEnergy>(memo_, keys[i])) loads_[i].energy = std::move(*known);
     return {};
   }));
@@ -172,7 +172,7 @@ Result<void> Examples::findEnergies(Phases& phases, const Exec& exec) {
   if (left.empty()) return {};
   auto last = Clock::now();
   return eachImpactEnergy(
-      tets_, impacts, material, params_.drop.elements, part,
+      tets_, impacts, material, params_.drop.elements, params_.drop.refine, part,
       [&](std::size_t first, std::vector<ImpactEnergy> energies) -> Result<void> {
         const double ms = msSince(last) / static_cast<double>(energies.size());
         SHERD_CHECK(forEach(quiet(exec), energies.size(), [&](std::size_t k) -> Result<void> {

@@ -32,11 +32,12 @@ Digest impactKey(const Digest& tets, const RigidParams& p) {
   return hasher.digest();
 }
 
-Digest energyKey(const Digest& tets, const Material& material, ElementOrder elements, const Digest& load) {
+Digest energyKey(const Digest& tets, const SimulateParams& params, const Digest& load) {
   Hasher hasher;
-  hasher.add(tets).add(static_cast<int>(elements)).add(load);
-  hashBits(hasher, material.youngModulus);
-  hashBits(hasher, material.poissonRatio);
+  hasher.add(tets).add(static_cast<int>(params.elements)).add(load);
+  if (params.elements == ElementOrder::Quadratic) hasher.add(params.refine);
+  hashBits(hasher, params.body.youngModulus);
+  hashBits(hasher, params.body.poissonRatio);
   return hasher.digest();
 }
 

@@ -22,8 +22,8 @@ std::optional<KeptEnergy> loadValue(ArchiveReader& from, std::type_identity<Kept
 
 /// Of what dropUntilImpact finds. `tets`: the body's digest.
 Digest impactKey(const Digest& tets, const RigidParams& params);
-/// Of the energy under a unit load.
-Digest energyKey(const Digest& tets, const Material& material, ElementOrder elements, const Digest& load);
+/// Of the energy under a unit load; `params`: the body's material, and how its energy is found.
+Digest energyKey(const Digest& tets, const SimulateParams& params, const Digest& load);
 /// Of the growth path for these weights, J, and volumes, m³, per node.
 Digest pathKey(const Digest& embedding, const std::vector<double>& weight, const std::vector<double>& volume,
                std::int64_t seed);

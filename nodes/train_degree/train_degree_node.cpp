@@ -27,6 +27,7 @@ struct Params {
   double obstacleYoung = defaults.drop.obstacleYoung, obstaclePoisson = defaults.drop.obstaclePoisson;
   double contactDuration = defaults.drop.contactDuration, contactRadius = defaults.drop.contactRadius;
   ElementOrder elements = defaults.drop.elements;
+  bool refine = defaults.drop.refine;
 
   TrainDegreeParams forStep() const {
     TrainDegreeParams p;
@@ -53,6 +54,7 @@ struct Params {
     p.drop.contactDuration = contactDuration;
     p.drop.contactRadius = contactRadius;
     p.drop.elements = elements;
+    p.drop.refine = refine;
     return p;
   }
 };
@@ -227,6 +229,8 @@ void addDrop(Builder& node) {
   node.choice("elements", &Params::elements,
               {{"linear", ElementOrder::Linear}, {"quadratic", ElementOrder::Quadratic}},
               "as in Simulate: quadratic ones cost some fifteen times as much on the same tetrahedra");
+  node.boolean("refine", &Params::refine,
+               "as in Simulate, for quadratic elements; each example then costs some ten times as much");
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ struct Fragments {
   std::vector<Piece> pieces;                             ///< at least one
   std::size_t sites = 1;                                 ///< N
   double energy = 0,
-         gamma = 0;          ///< J·m²: E_D and the threshold, which says nothing where the degree was given
+         gamma = 0;  ///< J·m²: E_D and the threshold, which decided nothing where the degree was given
   bool degreeGiven = false;  ///< N was asked for, not found by γ
   FractureCounts counts;
 };

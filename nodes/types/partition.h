@@ -31,7 +31,7 @@ struct Sites {
   static constexpr int archiveVersion = 2;
   Eigen::MatrixXd positions;  ///< d × N, m, in the embedding; N ≥ 1
   double energy = 0;  ///< J·m², E_D of these sites; 0 of pinned ones that no energy was asked for yet
-  double gamma = 0;   ///< J·m², the threshold asked for; says nothing where the degree was given
+  double gamma = 0;   ///< J·m², the threshold asked for; decided nothing where the degree was given
   bool degreeGiven = false;  ///< N was asked for, not found by γ
   std::int64_t pinned = 0;   ///< the first so many were put where they are by hand, and stay there; in [0, N]
 };
@@ -45,7 +45,7 @@ struct Partition {
   Eigen::MatrixXd sites;     ///< d × N, m
   std::vector<Index> label;  ///< per node, in [0, N)
   double energy = 0;         ///< J·m², E_D
-  double gamma = 0;          ///< J·m²; says nothing where the degree was given
+  double gamma = 0;          ///< J·m²; decided nothing where the degree was given, 0 where there was none
   bool degreeGiven = false;  ///< N was asked for, not found by γ
   int iterations = 0;        ///< Lloyd passes made
   bool converged = false;

@@ -113,6 +113,24 @@ void ScalarGrid::sample(std::span<const Vec3> points, std::span<double> out) con
   });
 }
 
+double ScalarGrid::background() const {
+  return isConstant() ? impl_->constant : static_cast<double>(impl_->grid->background());
+}
+
+Box ScalarGrid::activeBox() const {
+  Box box;
+  if (isConstant()) return box;
+  const openvdb::CoordBBox active = impl_->grid->evalActiveVoxelBoundingBox();
+  if (active.empty()) return box;
+  const openvdb::BBoxd index(active.min().asVec3d(), active.max().asVec3d());
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto end = [&](int axis) { return (corner >> axis & 1 ? index.max() : index.min())[axis]; };
+    const openvdb::Vec3d world = impl_->grid->indexToWorld(openvdb::Vec3d(end(0), end(1), end(2)));
+    box.add(impl_->frame.toMetres(Vec3(world.x(), world.y(), world.z())));
+  }
+  return box;
+}
+
 void hashValue(Hasher& hasher, const ScalarGrid& grid) { hasher.add(grid.impl().content); }
 
 std::size_t byteSize(const ScalarGrid& grid) {

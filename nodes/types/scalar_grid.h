@@ -31,6 +31,10 @@ class ScalarGrid {
   /// Trilinear samples at `points` (m); the grid's background outside of its active voxels. out.size() =
   /// points.size().
   void sample(std::span<const Vec3> points, std::span<double> out) const;
+  /// What it is where nothing is painted; a constant's value.
+  double background() const;
+  /// Around the active voxels, m; empty for a constant. Cost O(stored blocks).
+  Box activeBox() const;
   const Impl& impl() const { return *impl_; }
 
  private:

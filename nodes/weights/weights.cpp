@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/paint_place.h"
+
 namespace sherd {
 namespace {
 
@@ -72,10 +74,21 @@ Digest digestOfBeta(const ScalarGrid& beta, const std::vector<double>& samples,
   return isOne ? Digest{} : Hasher().add(used).digest();
 }
 
-Result<void> applyBeta(const ScalarGrid& beta, WeightField& field) {
+/// Paint that leaves the whole body at the background does nothing.
+void warnOfMiss(const ScalarGrid& beta, const std::vector<double>& samples, const WeightField& field,
+                const Exec& exec) {
+  if (beta.isConstant()) return;
+  for (std::size_t n = 0; n < samples.size(); ++n)
+    if (field.volume[n] > 0 && samples[n] != beta.background()) return;
+  exec.warn(fmt::format("the painted β misses the body, which has {:.4g} everywhere: {}", beta.background(),
+                        placeOfPaint(beta, *field.tets)));
+}
+
+Result<void> applyBeta(const ScalarGrid& beta, WeightField& field, const Exec& exec) {
   const std::vector<Vec3>& nodes = field.tets->nodes;
   std::vector<double> samples(beta.isConstant() ? 1 : nodes.size());
   beta.sample(std::span<const Vec3>(nodes).first(samples.size()), samples);
+  warnOfMiss(beta, samples, field, exec);
   field.beta = digestOfBeta(beta, samples, field.volume);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const double value = samples[beta.isConstant() ? 0 : n];
@@ -103,7 +116,7 @@ Result<WeightField> weights(const EnergyField& energy, const ScalarGrid* beta, c
   if (field.volume.empty()) return failure("the tetrahedral mesh is empty", {}, "energy");
   SHERD_ASSIGN(field.weight, unitWeights(energy, field.volume, params.alpha));
   if (exec.cancelled()) return cancelledError();
-  if (beta != nullptr) SHERD_CHECK(applyBeta(*beta, field));
+  if (beta != nullptr) SHERD_CHECK(applyBeta(*beta, field, exec));
   return field;
 }
 

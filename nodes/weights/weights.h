@@ -22,10 +22,11 @@ struct WeightsParams {
 };
 
 /// `energy.nodeEnergy`: J per node of energy.tets, finite and ≥ 0. `beta`: null for 1 everywhere; a constant
-/// grid is read once and costs nothing. The result has one weight ≥ 0 per node; a node with V_n = 0 (it lies
-/// outside the surface with all its tetrahedra) weighs 0. All energies 0 give all weights 0. Errors: sizes
-/// that don't match; energy or β that is negative, NaN or infinite, with node and place; α out of range. Cost
-/// O(nodes + tets).
+/// grid is read once and costs nothing; one whose paint leaves all of the body at its background is warned
+/// of, with the places of both. The result has one weight ≥ 0 per node; a node with V_n = 0 (it lies outside
+/// the surface with all its tetrahedra) weighs 0. All energies 0 give all weights 0. Errors: sizes that don't
+/// match; energy or β that is negative, NaN or infinite, with node and place; α out of range. Cost O(nodes +
+/// tets).
 Result<WeightField> weights(const EnergyField& energy, const ScalarGrid* beta, const WeightsParams& params,
                             const Exec& exec);
 

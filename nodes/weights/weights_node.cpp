@@ -7,7 +7,7 @@ NodeType weightsNode() {
   return NodeBuilder<WeightsParams>(
              "Weights", 1,
              "Turns strain energy and painted toughness into the weights that decide where it breaks.")
-      .implementation(2)
+      .implementation(3)
       .input<EnergyField>("energy", "strain energy, from Simulate")
       .optionalInput<ScalarGrid>(
           "beta",

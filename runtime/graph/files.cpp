@@ -166,14 +166,23 @@ class FileChecker {
     const auto [owner, isFirst] = owners_.emplace(key, std::pair(i, info.name));
     if (isFirst) return;
     const auto& [other, port] = owner->second;
-    if (graph_.nodes[static_cast<std::size_t>(other)].name != node.name) {
+    const Graph::Node& first = graph_.nodes[static_cast<std::size_t>(other)];
+    const bool isOfAnotherGraph = first.shot != node.shot;
+    if (first.name != node.name) {
+      const std::string place = isOfAnotherGraph ? " of " + first.home->name : "";
       complain(i, info,
-               wrong(graph_.nameOf(other, port) + " writes to the same path", "give each a path of its own"));
+               wrong(graph_.nameOf(other, port) + place + " writes to the same path",
+                     "give each a path of its own"));
       return;
     }
-    if (!clashes_.insert(node.name + '.' + info.name).second) return;
-    const Graph::Context& one =
-        graph_.contexts[static_cast<std::size_t>(graph_.nodes[static_cast<std::size_t>(other)].context)];
+    if (!clashes_.emplace(node.shot, node.name + '.' + info.name).second) return;
+    if (isOfAnotherGraph) {
+      complain(i, info,
+               wrong(first.home->name + " and " + node.home->name + " write to the same path",
+                     "give each graph a path of its own"));
+      return;
+    }
+    const Graph::Context& one = graph_.contexts[static_cast<std::size_t>(first.context)];
     const Graph::Context& two = graph_.contexts[static_cast<std::size_t>(node.context)];
     complain(i, info,
              wrong(one.label + " and " + two.label + " write to the same path",
@@ -193,7 +202,7 @@ class FileChecker {
   std::set<std::pair<ParamKind, std::string>> seen_;
   std::map<std::pair<fs::path, fs::path>, bool> mayWrite_;  ///< by folder and home
   std::map<std::string, std::pair<int, std::string>> owners_;
-  std::set<std::string> clashes_;
+  std::set<std::pair<int, std::string>> clashes_;  ///< by shot
 };
 
 }  // namespace

@@ -7,8 +7,9 @@
 
 namespace sherd::bench {
 
-/// Horse and bunny in cages of 1,250 to 20,000 tetrahedra, linear and quadratic, at the default contact patch
-/// and one twice as wide: time, energies, and how they are spread. Writes cages.csv and cages.svg.
+/// Horse and bunny in cages of 1,250 to 20,000 tetrahedra, linear, quadratic and quadratic with refinement,
+/// at the default contact patch and one twice as wide: time, energies, and how they are spread; and how far
+/// is refined. Writes cages.csv, refinements.csv and cages.svg.
 void cages(const Options& options, std::string& report);
 
 }  // namespace sherd::bench

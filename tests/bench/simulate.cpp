@@ -194,7 +194,7 @@ void solver(const Options& options, std::string& report) {
       if (n == 11)
         timeOf<std::function<std::size_t()>, std::size_t>(
             name + "/thousand", 3,
-            [&] { return orExit(impactEnergies(mesh, impacts, Material{}, order, Exec{})).size(); }, {});
+            [&] { return orExit(impactEnergies(mesh, impacts, Material{}, order, false, Exec{})).size(); }, {});
       runMeasured();
       double energy = 0;
       for (const double e : t.solution.tetEnergy) energy += e;

@@ -33,6 +33,7 @@ void expectWhole(const std::string& directory, const std::string& source) {
   EXPECT_GE(report.pieces, 5u);
   EXPECT_EQ(report.openEdges, 0u);
   EXPECT_EQ(report.lonelyCracks, 0u);
+  EXPECT_EQ(report.misnamed, 0u);
   EXPECT_LT(report.volumeError, 1e-9);
 }
 
@@ -51,6 +52,9 @@ TEST(Refracture, ThreeLevelsKeepEveryPromiseInTheirFiles) {
   EXPECT_EQ(third["pieces"][0]["parent"], "piece_0001_0002");
   EXPECT_EQ(third["pieces"][2]["name"], "piece_0001_0002_0003");
 
+  EXPECT_EQ(run.output.find("of its own"), std::string::npos) << run.output;
+  EXPECT_NE(contentOf(two + "/piece_0001_0002_surface.obj").find("usemtl inside\ng piece_0001_0002\n"),
+            std::string::npos);
   expectWhole(one, SHERD_SOURCE_DIR "/assets/mushroom.obj");
   expectWhole(two, wholePiece(one, "piece_0001"));
   expectWhole(three, wholePiece(two, "piece_0001_0002"));

@@ -126,6 +126,32 @@ TEST_F(Verbs, FramesThatWriteOneFileAreRefused) {
   EXPECT_NE(out.str().find("(2 nodes)"), std::string::npos) << out.str();
 }
 
+TEST_F(Verbs, GraphsThatWriteOneDirectoryAreNamed) {
+  const auto graphInto = [&](const std::string& name, const std::string& node, const std::string& folder) {
+    return directory.write(
+        name, R"({"format": 1, "nodes": {"c": {"type": "Constant@1"}, ")" + node +
+                  R"(": {"type": "Sink@1", "in": {"value": "c"}, "params": {"directory": ")" + folder +
+                  R"("}}}})");
+  };
+  const auto runAll = [&](const std::vector<std::string>& paths) {
+    RunOptions options;
+    options.graphs = paths;
+    return run(options);
+  };
+  const std::string a = graphInto("a.json", "s", "out"), b = graphInto("b.json", "s", "./out/"),
+                    c = graphInto("c.json", "t", "out"), d = graphInto("d.json", "s", "other");
+  EXPECT_EQ(runAll({a, b}), kWrongInput);
+  EXPECT_NE(err.str().find("s.directory: " + a + " and " + b +
+                           " write to the same path; give each graph a path of its own"),
+            std::string::npos)
+      << err.str();
+  EXPECT_EQ(runAll({a, c}), kWrongInput);
+  EXPECT_NE(err.str().find("t.directory: s.directory of " + a + " writes to the same path; give each"),
+            std::string::npos)
+      << err.str();
+  EXPECT_EQ(runAll({a, d}), kOk) << err.str();
+}
+
 TEST_F(Verbs, OutputsOutsideOfTheGraphsFolderMustBeAllowed) {
   const TemporaryDirectory elsewhere;
   const std::string there = elsewhere.path().string();

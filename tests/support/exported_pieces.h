@@ -16,6 +16,9 @@ namespace sherd {
 struct ObjTriangles {
   using Point = std::array<double, 3>;
   std::vector<std::array<Point, 3>> triangles;
+  /// Per triangle: does the last `g` or `usemtl` before it hold "inside" or "crack"? So those take it for a
+  /// crack face who know nothing but the file.
+  std::vector<bool> saidCrack;
 
   double sixVolumes() const {
     double sum = 0;
@@ -33,13 +36,18 @@ inline ObjTriangles readObjTriangles(const std::filesystem::path& path) {
   std::vector<ObjTriangles::Point> points;
   std::ifstream in(path);
   std::string line, key, word;
+  bool saysCrack = false;
   while (std::getline(in, line)) {
     std::istringstream words(line);
+    key.clear();
     words >> key;
     if (line.rfind("v ", 0) == 0) {
       ObjTriangles::Point p;
       words >> p[0] >> p[1] >> p[2];
       points.push_back(p);
+    } else if (key == "g" || key == "usemtl") {
+      words >> word;
+      saysCrack = word.find("inside") != std::string::npos || word.find("crack") != std::string::npos;
     } else if (line.rfind("f ", 0) == 0) {
       std::array<ObjTriangles::Point, 3> t;
       for (auto& corner : t) {
@@ -47,6 +55,7 @@ inline ObjTriangles readObjTriangles(const std::filesystem::path& path) {
         corner = points.at(static_cast<std::size_t>(std::stol(word) - 1));
       }
       result.triangles.push_back(t);
+      result.saidCrack.push_back(saysCrack);
     }
   }
   return result;
@@ -56,6 +65,7 @@ struct ExportedReport {
   std::size_t pieces = 0;
   std::size_t openEdges = 0;     ///< over all pieces
   std::size_t lonelyCracks = 0;  ///< crack triangles without exactly one opposite twin
+  std::size_t misnamed = 0;      ///< triangles of a skin said to be crack, and the other way round
   double volumeError = 0;        ///< relative to the source
 };
 
@@ -71,9 +81,13 @@ inline ExportedReport measureExported(const std::filesystem::path& directory,
     if (suffix == std::string::npos) continue;
     ++report.pieces;
     ObjTriangles piece = readObjTriangles(entry.path());
+    report.misnamed +=
+        static_cast<std::size_t>(std::count(piece.saidCrack.begin(), piece.saidCrack.end(), true));
     const auto crackPath = directory / (name.substr(0, suffix) + "_crack.obj");
     if (std::filesystem::exists(crackPath)) {
       const ObjTriangles crack = readObjTriangles(crackPath);
+      report.misnamed +=
+          static_cast<std::size_t>(std::count(crack.saidCrack.begin(), crack.saidCrack.end(), false));
       for (const auto& t : crack.triangles) {
         auto sorted = t;
         std::sort(sorted.begin(), sorted.end());

@@ -102,7 +102,7 @@ TEST(Stretch, OutOfRangeIsRefusedAndAMissIsSaid) {
   Said said;
   const ScalarGrid missed = painted({Vec3(5, 5, 5)}, 0.1, 4);
   EXPECT_EQ(embedded(box, {}, &missed, said.exec).metric, Embedding::Metric::Euclidean);
-  EXPECT_TRUE(said.warning("strokes miss it"));
+  EXPECT_TRUE(said.warning("strokes miss it; the paint lies from (4.9"));
 }
 
 /// Share of the cracks' area that lies within `radius` of the segment from a to b, by their centroids.

@@ -154,7 +154,22 @@ TEST_F(Export, GammaOfZeroIsNoDegreeGiven) {
   EXPECT_NE(listener.infos.back().find("degree given"), std::string::npos) << listener.infos.back();
   json = nlohmann::json::parse(slurp(out("pieces.json")));
   EXPECT_TRUE(json["degree_given"]);
-  EXPECT_FALSE(json["below_threshold"]);
+  EXPECT_TRUE(json["gamma"].is_null()) << "cells of no γ";
+  EXPECT_TRUE(json["below_threshold"].is_null()) << "nothing was judged";
+  f.gamma = 5;
+  ASSERT_TRUE(run(f).ok());
+  json = nlohmann::json::parse(slurp(out("pieces.json")));
+  EXPECT_EQ(json["gamma"], 5);
+  EXPECT_TRUE(json["below_threshold"].is_null());
+}
+
+TEST_F(Export, MergedPartsAreCounted) {
+  Fragments f = test::slicedBox(2);
+  ASSERT_TRUE(run(f).ok());
+  EXPECT_EQ(nlohmann::json::parse(slurp(out("pieces.json")))["merged_parts"], 0);
+  f.counts.mergedParts = 3;
+  ASSERT_TRUE(run(f).ok());
+  EXPECT_EQ(nlohmann::json::parse(slurp(out("pieces.json")))["merged_parts"], 3);
 }
 
 TEST_F(Export, HowTheDegreeCameAboutIsPartOfTheHash) {
@@ -211,7 +226,8 @@ TEST_F(Export, CoordinatesAreTheVeryDoubles) {
 TEST_F(Export, NamesAndAttributes) {
   ASSERT_TRUE(run(test::slicedBox(3)).ok());
   const Obj surface = readObj(out("piece_0002_surface.obj")), crack = readObj(out("piece_0002_crack.obj"));
-  EXPECT_EQ(surface.groups, std::vector<std::string>{"piece_0002"});
+  EXPECT_EQ(std::set<std::string>(surface.groups.begin(), surface.groups.end()),
+            std::set<std::string>{"piece_0002"});
   EXPECT_EQ(std::set<std::string>(surface.materials.begin(), surface.materials.end()),
             (std::set<std::string>{"paint", "base"}));
   EXPECT_EQ(surface.normals, 4u);  // of the four sides of a middle slice
@@ -247,6 +263,29 @@ TEST_F(Export, AMaterialNamedAsOursIsWarnedOf) {
   ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
   ASSERT_EQ(listener.warnings.size(), 1u);
   EXPECT_NE(listener.warnings[0].find("'inside'"), std::string::npos);
+}
+
+TEST_F(Export, FacesOfAnEarlierFractureAreSkinOfThisOne) {
+  TriMesh box = test::boxMesh(Vec3::Zero(), Vec3(2, 1, 1));
+  box.materials = {"crackle glaze", "inside"};
+  box.piece = "piece_0001";
+  ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
+  EXPECT_TRUE(listener.warnings.empty());
+  std::istringstream lines(slurp(out("piece_0001_surface.obj")));
+  std::string last;
+  std::size_t faces = 0;
+  std::set<std::string> materials;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("usemtl ")) materials.insert(line.substr(7));
+    if (line.starts_with("usemtl ") || line.starts_with("g ")) last = line;
+    if (!line.starts_with("f ")) continue;
+    EXPECT_EQ(last, "g piece_0001");
+    ++faces;
+  }
+  EXPECT_GT(faces, 8u);
+  EXPECT_EQ(materials, (std::set<std::string>{"crackle glaze", "inside"}));
+  const std::string crack = slurp(out("piece_0001_crack.obj"));
+  EXPECT_NE(crack.find("usemtl inside\ng piece_0001_crack_with_piece_0002\nf "), std::string::npos);
 }
 
 TEST_F(Export, TextureDensityScalesCrackUvs) {
@@ -488,7 +527,9 @@ TEST_F(Export, WarnsOfWhatObjCannotHold) {
   box.colorSets.push_back({"paint", std::vector<Vec4>(box.cornerCount(), Vec4(1, 0.5, 0.25, 1))});
   ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
   ASSERT_EQ(listener.warnings.size(), 1u);
-  EXPECT_NE(listener.warnings[0].find("1 more UV set and 1 colour set are left out"), std::string::npos);
+  EXPECT_EQ(listener.warnings[0],
+            "OBJ holds the first UV set only, and no colours: 1 more UV set and 1 colour set are left out; "
+            "format ply keeps them");
   params.format = Params::Format::Ply;
   ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
   EXPECT_EQ(listener.warnings.size(), 1u);
@@ -497,6 +538,23 @@ TEST_F(Export, WarnsOfWhatObjCannotHold) {
                            "property int material_index\n", "comment material 0 paint\n"})
     EXPECT_NE(ply.find(line), std::string::npos) << line;
   EXPECT_FALSE(fs::exists(out("piece_0001_surface.obj")));
+}
+
+TEST_F(Export, WarnsOfNothingThatIsNotLost) {
+  TriMesh box = test::boxMesh(Vec3::Zero(), Vec3(2, 1, 1));
+  ASSERT_EQ(box.uvSets.size(), 1u);
+  ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
+  EXPECT_TRUE(listener.warnings.empty());
+  TriMesh coloured = box;
+  coloured.uvSets.clear();
+  coloured.colorSets.push_back({"paint", std::vector<Vec4>(box.cornerCount(), Vec4(1, 0.5, 0.25, 1))});
+  ASSERT_TRUE(run(test::slices(coloured, {1.1})).ok());
+  box.uvSets.resize(3, box.uvSets.front());
+  ASSERT_TRUE(run(test::slices(box, {1.1})).ok());
+  EXPECT_EQ(listener.warnings,
+            (std::vector<std::string>{
+                "OBJ holds no colours: 1 colour set is left out; format ply keeps it",
+                "OBJ holds the first UV set only: 2 more UV sets are left out; format ply keeps them"}));
 }
 
 TEST_F(Export, PlyHoldsWhatItsHeaderSays) {

@@ -172,6 +172,25 @@ TEST_F(ExportGlb, OutsideIsTheArtistsAndInsideIsGenerated) {
   }
 }
 
+TEST_F(ExportGlb, OldAndNewCrackFacesAreOfOneMaterial) {
+  TriMesh box = test::boxMesh(Vec3::Zero(), Vec3(2, 1, 1));
+  box.materials[1] = "inside";
+  const nlohmann::json inside = mustExport(test::slicedBox(2)).json["materials"][2];
+  for (const bool isPiece : {false, true}) {
+    box.piece = isPiece ? "piece_0001" : "";
+    said.lines.clear();
+    const test::GlbFile file = mustExport(test::slices(box, {1.1}));
+    EXPECT_NE(said.warning("'inside' of its own"), isPiece);
+    const auto& materials = file.json["materials"];
+    ASSERT_EQ(materials.size(), isPiece ? 2u : 3u);
+    EXPECT_EQ(materials.back(), inside);
+  }
+  // Where no old crack face is left in sight the material is there all the same, once.
+  box.materials = {"paint", "base", "inside"};
+  const test::GlbFile file = mustExport(test::slices(box, {1.1}));
+  EXPECT_EQ(file.json["materials"].size(), 3u);
+}
+
 TEST_F(ExportGlb, WhatTheSourceLacksIsLeftOut) {
   TriMesh box = test::boxMesh(Vec3::Zero(), Vec3(2, 1, 1));
   box.normals.clear(), box.uvSets.clear(), box.materials.clear(), box.materialOf.clear();

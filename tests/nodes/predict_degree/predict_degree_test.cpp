@@ -161,6 +161,7 @@ TEST(PredictDegree, TellsAGivenDegreeFromAGammaOfZero) {
   EXPECT_FALSE(zero.degreeGiven);
   EXPECT_EQ(zero.gamma, 0);
   EXPECT_TRUE(given.degreeGiven);
+  EXPECT_EQ(given.gamma, 1) << "as the user had it";
   EXPECT_FALSE(search(c, {.gamma = 1}).degreeGiven);
   Sites other = given;
   other.degreeGiven = false;

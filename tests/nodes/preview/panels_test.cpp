@@ -69,7 +69,10 @@ TEST(FieldSoup, OneValueIsSaidAndNoneRefused) {
   ASSERT_TRUE(one.ok());
   EXPECT_TRUE(one->scale.isOne());
   EXPECT_EQ(one->scale.low, 2);
-  for (const float value : one->soup.values) ASSERT_EQ(value, 0.5f);
+  EXPECT_TRUE(one->soup.values.empty());
+  ASSERT_EQ(one->soup.paint.size(), one->soup.corners.size() / 3);
+  ASSERT_EQ(one->soup.palette.size(), 1u);
+  EXPECT_LT(one->soup.palette[0].maxCoeff() - one->soup.palette[0].minCoeff(), 0.06f) << "a grey";
   const auto none = fieldSoup(box, shadingNormals(box), ScalarGrid::constant(NAN), PictureSpace::of(box));
   ASSERT_FALSE(none.ok());
   EXPECT_EQ(none.error().port, "beta");
@@ -217,6 +220,18 @@ double brightness(const Picture& picture, int begin, int end) {
   return sum / count;
 }
 
+/// Pixels of a strong colour in columns [begin, end).
+std::size_t colouredIn(const Picture& picture, int begin, int end) {
+  std::size_t count = 0;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = begin; x < end; ++x) {
+      const std::uint8_t* p = &picture.rgb[3 * static_cast<std::size_t>(y * picture.width + x)];
+      const auto [low, high] = std::minmax({p[0], p[1], p[2]});
+      count += high - low >= 40;
+    }
+  return count;
+}
+
 TEST(PreviewPanels, BetaOfTwoHalvesIsDarkOnOneSideAndBrightOnTheOther) {
   const Fragments f = test::slices(test::boxMesh(Vec3(-1, -0.5, -0.5), Vec3(1, 0.5, 0.5)), {0.1});
   const ScalarGrid halves = twoHalves(0), one = ScalarGrid::constant(1);
@@ -224,7 +239,24 @@ TEST(PreviewPanels, BetaOfTwoHalvesIsDarkOnOneSideAndBrightOnTheOther) {
                 same = mustRender({.pieces = &f, .beta = &one}, small());
   const int left = 400 * 2 / 3, middle = left + 67;
   EXPECT_GT(brightness(two, middle + 15, 400), brightness(two, left, middle - 15) + 60);
-  EXPECT_LT(std::abs(brightness(same, middle + 15, 400) - brightness(same, left, middle - 15)), 40);
+  EXPECT_EQ(colouredIn(same, left, 400), 0u) << "one value has no colour of the scale";
+  EXPECT_GT(colouredIn(two, left, 400), 500u);
+}
+
+TEST(PreviewPanels, OneFragilityStandsInTheLegend) {
+  const Fragments f = test::slicedBox(2);
+  const ScalarGrid one = ScalarGrid::constant(1), four = ScalarGrid::constant(4);
+  const Picture low = mustRender({.pieces = &f, .beta = &one}, small()),
+                high = mustRender({.pieces = &f, .beta = &four}, small());
+  ASSERT_EQ(low.rgb.size(), high.rgb.size());
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i < low.rgb.size(); ++i) {
+    if (low.rgb[i] == high.rgb[i]) continue;
+    ++differing;
+    EXPECT_GT(static_cast<int>(i / 3) / low.width, 70) << "above the legend";
+    if (differing > 300) break;
+  }
+  EXPECT_GT(differing, 5u);
 }
 
 TEST(PreviewPanels, EachHasItsPlaceAndTheSliceItsOwn) {

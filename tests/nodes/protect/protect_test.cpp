@@ -111,6 +111,10 @@ TEST(Protect, NothingAndEverythingAreSaid) {
   EXPECT_EQ(away.coordinates, before.coordinates);
   EXPECT_EQ(away.diameter, before.diameter);
   EXPECT_TRUE(weak.warning("(0.4 at most)"));
+  EXPECT_FALSE(weak.warning("the paint lies"));
+  Said beside;
+  EXPECT_EQ(kept(before, painted({dab(Vec3(5, 5, 5), 0.3)}), beside.exec).coordinates, before.coordinates);
+  EXPECT_TRUE(beside.warning("(0 at most); the paint lies from (4.7"));
   const Embedding one = kept(before, ScalarGrid::constant(1), all.exec);
   EXPECT_TRUE(all.warning("all of the body is protected"));
   for (Eigen::Index n = 1; n < one.coordinates.cols(); ++n)

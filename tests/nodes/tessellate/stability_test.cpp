@@ -170,6 +170,10 @@ TEST(Stability, CanonicalSeedsOfFormerFaults) {
   for (const std::uint64_t seed : {509, 4134, 4379, 5911, 6962, 8862})
     run("canonical", adversarialCase, kCanonical, seed, seed, false);
 }
+/// Two sheets on one flat triangle.
+TEST(Stability, ConformingSeedsOfFormerFaults) {
+  run("conforming", conformingCase, kConforming, 4868, 4868, false);
+}
 TEST(Stability, CanonicalCells) { run("canonical", adversarialCase, kCanonical, 1, 60, false); }
 TEST(Stability, ConformingSurfaces) { run("conforming", conformingCase, kConforming, 1, 50, false); }
 TEST(SlowStability, ExactCells) { run("exact", adversarialCase, kExact, 1, 1500, true); }

@@ -8,10 +8,13 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "geometry/solid.h"
+#include "graph/node_type.h"
 #include "support/promises.h"
+#include "support/said.h"
 #include "support/surface_families.h"
 
 namespace sherd {
+NodeType tessellateNode();
 namespace {
 
 /// Nearest-site cells in space itself.
@@ -264,6 +267,32 @@ TEST(Tessellate, SmallPartsJoinTheNeighbourThatTheyTouchMost) {
   EXPECT_LT(merged.pieces.size(), all.pieces.size());
   EXPECT_EQ(merged.pieces.size() + merged.counts.mergedParts, all.pieces.size());
   for (const Piece& p : merged.pieces) EXPECT_GE(p.volume, 0.05 * 4.0);
+}
+
+TEST(TessellateNode, SaysHowManyPartsWereMergedAndWhy) {
+  const auto tets = families::cagedInBlock(families::sphereSurface(Vec3::Zero(), 1, 32, 16), 6);
+  const auto saidOf = [&](std::size_t sites, const char* bound, double value, Said& said) {
+    const NodeType type = tessellateNode();
+    ParamValues params;
+    for (const ParamInfo& p : type.params) params[p.name] = p.fallback;
+    params[bound] = value;
+    NodeIo io(said.exec);
+    io.setInput("cells", Value::of<Partition>(std::make_shared<const Partition>(
+                             partitionBySites(tets, randomSites(*tets, sites, 3)))));
+    EXPECT_TRUE(type.run(params, io).ok());
+    return io.output("pieces").as<Fragments>();
+  };
+  Said all, absolute, some, none;
+  EXPECT_EQ(saidOf(12, "min_volume", 0.5, all)->pieces.size(), 1u);
+  EXPECT_TRUE(all.warning("11 parts of 12 cells were cut, and all merged into one again"))
+      << all.lines[0].second;
+  EXPECT_TRUE(all.warning("below min_volume = 0.5 (2.0"));
+  EXPECT_EQ(saidOf(12, "min_volume_absolute", 3, absolute)->pieces.size(), 1u);
+  EXPECT_TRUE(absolute.warning("below min_volume_absolute = 3 m³"));
+  EXPECT_GT(saidOf(12, "min_volume", 0.05, some)->pieces.size(), 1u);
+  EXPECT_TRUE(some.info("below min_volume = 0.05 (0.2")) << some.lines.back().second;
+  EXPECT_EQ(saidOf(1, "min_volume", 0.5, none)->pieces.size(), 1u);
+  EXPECT_TRUE(none.info("nothing was cut: the body stays one piece"));
 }
 
 TEST(Tessellate, SeveralComponentsAreSeveralPieces) {

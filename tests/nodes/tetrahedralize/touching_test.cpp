@@ -1,7 +1,9 @@
 // Surfaces that touch themselves, as pieces of a fracture may: each part has vertices of its own there.
 #include <gtest/gtest.h>
 
+#include "base/rng.h"
 #include "surfaces.h"
+#include "tetrahedralize/contacts.h"
 #include "tetrahedralize/shells.h"
 
 namespace sherd::test {
@@ -9,13 +11,30 @@ namespace {
 
 using Topology = std::vector<std::pair<bool, int>>;
 
+std::size_t contacts(const TriMesh& mesh, double distance = 1e-5) {
+  return countContacts(mesh.positions, mesh.triangles, distance);
+}
+
 TEST(TetrahedralizeTouching, CountsContacts) {
-  EXPECT_EQ(countContacts(box(Vec3::Zero(), Vec3::Ones()).positions), 0u);
-  EXPECT_EQ(
-      countContacts(joined(box(Vec3::Zero(), Vec3::Ones()), box(Vec3::Ones(), Vec3(2, 2, 2))).positions), 1u);
-  EXPECT_EQ(
-      countContacts(joined(box(Vec3::Zero(), Vec3::Ones()), box(Vec3(1, 1, 0), Vec3(2, 2, 1))).positions),
-      2u);
+  const TriMesh one = box(Vec3::Zero(), Vec3::Ones());
+  EXPECT_EQ(contacts(one), 0u);
+  EXPECT_EQ(contacts(joined(one, box(Vec3::Ones(), Vec3(2, 2, 2)))), 1u);
+  EXPECT_EQ(contacts(joined(one, box(Vec3(1, 1, 0), Vec3(2, 2, 1)))), 2u);
+  EXPECT_EQ(contacts(joined(one, box(Vec3(1 + 3e-6, 1 + 3e-6, 0), Vec3(2, 2, 1)))), 2u);
+  EXPECT_EQ(contacts(joined(one, box(Vec3(1 + 1e-5, 1 + 1e-5, 0), Vec3(2, 2, 1)))), 0u);
+  EXPECT_EQ(contacts(one, 1.1), 0u) << "its vertices hang together along its edges";
+}
+
+TEST(TetrahedralizeTouching, NearPairsAreAllPairsThatAreNear) {
+  std::vector<Vec3> points;
+  Rng rng(3);
+  for (int k = 0; k < 400; ++k) points.emplace_back(rng.uniform() - 0.5, rng.uniform() - 0.5, rng.uniform());
+  std::vector<std::pair<Index, Index>> expected;
+  for (Index a = 0; a < 400; ++a)
+    for (Index b = a + 1; b < 400; ++b)
+      if ((points[at(a)] - points[at(b)]).norm() <= 0.02) expected.emplace_back(a, b);
+  EXPECT_EQ(nearPairs(points, 0.02), expected);
+  EXPECT_FALSE(expected.empty());
 }
 
 TEST(TetrahedralizeTouching, AContactMayJoinBodiesOrMakeAHandleAndNothingElse) {
@@ -46,6 +65,25 @@ TEST(TetrahedralizeTouching, TwoBoxesThatMeetInAPointHaveOneCage) {
 
 TEST(TetrahedralizeTouching, TwoBoxesThatMeetAlongAnEdgeHaveOneCage) {
   expectGood(cageOf(joined(box(Vec3::Zero(), Vec3::Ones()), box(Vec3(1, 1, 0), Vec3(2, 2, 1))), 300), 1, 2);
+}
+
+TEST(TetrahedralizeTouching, TwoBoxesThatRepairDrewApartHaveOneCage) {
+  const double gap = 1e-6;
+  expectGood(
+      cageOf(joined(box(Vec3::Zero(), Vec3::Ones()), box(Vec3(1 + gap, 1 + gap, 0), Vec3(2, 2, 1))), 300), 1,
+      2);
+  expectGood(
+      cageOf(joined(box(Vec3::Zero(), Vec3::Ones()), box(Vec3::Constant(1 + gap), Vec3(2, 2, 2))), 300), 1,
+      2);
+}
+
+TEST(TetrahedralizeTouching, BodiesTooNearForAnyCageAreNamedAtOnce) {
+  const auto cage =
+      cageOf(joined(box(Vec3::Zero(), Vec3::Ones()), box(Vec3(1 + 1e-4, 1 + 1e-4, 0), Vec3(2, 2, 1))), 300);
+  ASSERT_FALSE(cage.ok());
+  const std::string text = cage.error().text();
+  EXPECT_NE(text.find("the gap of 0.000141 m at (1.00005, 1.00005, "), std::string::npos) << text;
+  EXPECT_NE(text.find("edges of about 0.00014 m there would keep it open"), std::string::npos) << text;
 }
 
 }  // namespace

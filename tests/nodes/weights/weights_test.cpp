@@ -5,7 +5,9 @@
 #include <numeric>
 #include <random>
 
+#include "beta/paint_beta.h"
 #include "graph/node_type.h"
+#include "support/said.h"
 #include "support/tet_families.h"
 
 namespace sherd {
@@ -89,6 +91,58 @@ TEST(Weights, ConstantBetaMultipliesAfterTheRescaling) {
   const ScalarGrid four = ScalarGrid::constant(4);
   const WeightField plain = weighed(e, 2), fragile = weighed(e, 2, &four);
   for (std::size_t n = 0; n < plain.weight.size(); ++n) EXPECT_EQ(fragile.weight[n], 4 * plain.weight[n]);
+}
+
+/// What is warned of where a dab is painted beside, on or in a box.
+std::string warnedOf(const Vec3& box, const Vec3& dab, double radius, double voxel) {
+  PaintBetaParams params;
+  params.voxel = voxel;
+  params.strokes = {{.points = {dab}, .radius = radius, .falloff = 0, .value = 4}};
+  const auto beta = paintBeta({}, params, Exec{});
+  EXPECT_TRUE(beta.ok());
+  EXPECT_FALSE(beta->isConstant());
+  const EnergyField e = randomEnergy(families::box(4, 4, 4, box), 11);
+  Said said;
+  const auto painted = weights(e, &*beta, {}, said.exec);
+  EXPECT_TRUE(painted.ok());
+  const bool changes = painted.ok() && painted->weight != weighed(e, 1).weight;
+  EXPECT_EQ(changes, said.lines.empty()) << "what does nothing is said, and nothing else";
+  if (said.lines.empty()) return {};
+  EXPECT_EQ(said.lines[0].first, LogLevel::Warning);
+  return said.lines[0].second;
+}
+
+TEST(Weights, PaintThatMissesTheBodyIsWarnedOfWithBothPlaces) {
+  const std::string beside = warnedOf(Vec3(1, 1, 1), Vec3(5, 5, 5), 0.1, 0.01);
+  EXPECT_EQ(beside.find("the painted β misses the body, which has 1 everywhere: the paint lies from (4.9"),
+            0u)
+      << beside;
+  EXPECT_TRUE(beside.ends_with(" m, the body from (0, 0, 0) to (1, 1, 1) m")) << beside;
+  const std::string millimetres = warnedOf(Vec3(1, 1, 1), Vec3(700, 700, 700), 100, 10);
+  EXPECT_NE(millimetres.find("times as large, and divided by 1000 would lie on it: another unit?"),
+            std::string::npos)
+      << millimetres;
+  const std::string metres = warnedOf(Vec3(100, 100, 100), Vec3(-0.03, 0.7, 0.7), 0.1, 0.01);
+  EXPECT_EQ(metres.find("unit"), std::string::npos) << metres;
+  const std::string small = warnedOf(Vec3(100, 100, 100), Vec3(0.1, 0.2, 0.3), 0.01, 0.002);
+  EXPECT_NE(small.find("finer than the tetrahedra"), std::string::npos) << small;
+  const std::string turned = warnedOf(Vec3(2, 1, 0.2), Vec3(1, -0.1, 0.5), 0.05, 0.01);
+  EXPECT_NE(turned.find("with y and z exchanged it would lie on it: another axis up?"), std::string::npos)
+      << turned;
+}
+
+TEST(Weights, PaintThatMeetsTheBodyIsNotWarnedOf) {
+  EXPECT_EQ(warnedOf(Vec3(1, 1, 1), Vec3(1, 1, 1), 0.3, 0.02), "");
+  EXPECT_EQ(warnedOf(Vec3(1, 1, 1), Vec3(0, 0.5, 0.5), 0.1, 0.02), "") << "one node of many";
+  EXPECT_EQ(warnedOf(Vec3(1, 1, 1), Vec3(0.5, 0.5, 0.5), 3, 0.1), "") << "all of it";
+  const EnergyField e = randomEnergy(families::box(2, 2, 2, Vec3(1, 1, 1)), 12);
+  for (const double value : {1.0, 4.0}) {
+    const ScalarGrid constant = ScalarGrid::constant(value);
+    Said said;
+    EXPECT_TRUE(weights(e, &constant, {}, said.exec).ok());
+    EXPECT_TRUE(weights(e, nullptr, {}, said.exec).ok());
+    EXPECT_TRUE(said.lines.empty());
+  }
 }
 
 TEST(Weights, RefusesWhatIsNoAmountAndNamesThePlace) {

@@ -1,0 +1,25 @@
+// Multiversioned functions as they are compiled for one level of processors, in a shared object of its own.
+#pragma once
+
+#include <cstddef>
+
+namespace sherd::test {
+
+/// squaredDistance and addScaled of cvd/distance.h; the others of learn_degree/sums.h, with matrices of
+/// `rows` times `columns` column by column.
+struct Level {
+  double (*squaredDistance)(const double* a, const double* b, std::size_t size);
+  void (*addScaled)(double* sum, const double* a, double weight, std::size_t size);
+  void (*addProduct)(const double* m, std::size_t rows, std::size_t columns, const double* a, double* y);
+  void (*squaredDistances)(const double* m, std::size_t rows, std::size_t columns, const double* z,
+                           double* out);
+  double (*squaredNormOfProduct)(const double* m, std::size_t rows, const double* a);
+  void (*rootSums)(const double* v, const double* w, std::size_t size, double* out);
+  void (*runningSums)(const double* m, std::size_t rows, const double* centre, const double* weight,
+                      const int* order, std::size_t count, double* out);
+};
+
+}  // namespace sherd::test
+
+/// Of the shared object; its name there.
+extern "C" sherd::test::Level sherdLevel();
