@@ -44,17 +44,44 @@ void forCubes(const TriMesh& surface, std::size_t t, const Vec3& corner, double 
               (static_cast<std::size_t>(j) + static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(k)));
 }
 
-/// Every tetrahedron of a cube holds the triangles that touch the cube.
-void hold(TetMesh& cage, std::size_t cubes, const Vec3& corner, double edge, const std::array<int, 3>& n) {
+/// The planes of a tetrahedron's faces: n · x > c beyond them, with a margin for rounding.
+using Faces = std::array<Vec4, 4>;
+
+Faces facesOf(const TetMesh& cage, std::size_t tet, double margin) {
+  Faces faces;
+  for (std::size_t f = 0; f < 4; ++f) {
+    const auto corner = [&](std::size_t c) -> const Vec3& {
+      return cage.nodes[at(cage.tets[tet][at(kTetraFace[f][c])])];
+    };
+    const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+    faces[f] << normal, normal.dot(corner(0)) + margin;
+  }
+  return faces;
+}
+
+bool mayTouch(const TriMesh& surface, std::size_t triangle, const Faces& faces) {
+  return std::ranges::none_of(faces, [&](const Vec4& face) {
+    return std::ranges::all_of(surface.triangles[triangle], [&](Index v) {
+      return face.head<3>().dot(surface.positions[at(v)]) > face[3];
+    });
+  });
+}
+
+/// Of the triangles that touch its cube a tetrahedron holds those that are not beyond one of its faces.
+void hold(TetMesh& cage, const Vec3& corner, double edge, const std::array<int, 3>& n) {
+  constexpr std::size_t kTets = 6;  // of a cube
   const TriMesh& surface = *cage.surface;
-  std::vector<std::vector<Index>> ofCube(cubes);
+  std::vector<Faces> faces;
+  for (std::size_t tet = 0; tet < cage.tets.size(); ++tet) faces.push_back(facesOf(cage, tet, 1e-9 * edge));
+  std::vector<std::vector<Index>> ofTet(cage.tets.size());
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-    forCubes(surface, t, corner, edge, n,
-             [&](std::size_t cube) { ofCube[cube].push_back(static_cast<Index>(t)); });
+    forCubes(surface, t, corner, edge, n, [&](std::size_t cube) {
+      for (std::size_t tet = kTets * cube; tet < kTets * (cube + 1); ++tet)
+        if (mayTouch(surface, t, faces[tet])) ofTet[tet].push_back(static_cast<Index>(t));
+    });
   cage.held.clear();
   cage.heldBegin.assign(1, 0);
-  for (std::size_t tet = 0; tet < cage.tets.size(); ++tet) {
-    const auto& held = ofCube[tet / 6];
+  for (const auto& held : ofTet) {
     cage.held.insert(cage.held.end(), held.begin(), held.end());
     cage.heldBegin.push_back(static_cast<Index>(cage.held.size()));
   }
@@ -112,7 +139,7 @@ std::shared_ptr<const TetMesh> blockAround(TriMesh surface, int n) {
   TetMesh cage = families::fromCubes(cubes, Vec3::Constant(edge));
   for (Vec3& p : cage.nodes) p += corner;
   cage.surface = std::make_shared<const TriMesh>(std::move(surface));
-  hold(cage, cubes.size(), corner, edge, count);
+  hold(cage, corner, edge, count);
   linkSurface(cage, Exec{});  // as Tetrahedralize does, once for every body
   return std::make_shared<const TetMesh>(std::move(cage));
 }
