@@ -9,7 +9,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 
 #include "base/exec.h"
@@ -20,8 +19,8 @@
 
 namespace sherd {
 
-inline constexpr double kPatchEdges = 0.5;
-inline constexpr double kLargestShare = 0.0025;
+inline constexpr double kPatchEdges = 0.5;       ///< radii
+inline constexpr double kLargestShare = 0.0025;  ///< of the energy, in meshes of kShareTets or more
 inline constexpr double kShareTets = 5000;
 /// Edges are halved for energy's sake at most to this share of the tetrahedron's longest.
 inline constexpr double kShortestShare = 0.25;

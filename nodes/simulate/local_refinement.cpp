@@ -48,9 +48,8 @@ Result<LocalRefinement> LocalRefinement::make(const Statics& statics, const Divi
   r.rules_ = std::make_unique<const ElementRules>(elements, rules.rule);
   const Vec3 centre = boxOf(cage.nodes).centre();
   for (const Vec3& p : elements.mesh().nodes) r.nodes_.emplace_back((p - centre) / statics.size_);
-  for (std::size_t i = 0; i < r.pieces(); ++i) {
+  for (std::size_t i = 0; i < r.pieces(); ++i)
     r.weight_.push_back(rules.share[i] * Element(r.nodes_, elements.mesh().tets[i]).volume);
-  }
   r.outsideVolume_ = statics.stiffnessVolume_;
   for (std::size_t t = 0; t < cage.tets.size(); ++t)
     if (r.region_->covers(t)) r.outsideVolume_[t] = 0;

@@ -1,7 +1,7 @@
 // A load's solution with smaller elements in a part of the body, without another factorization of the whole.
 //
 // Displacements are sought in V_H + V_h: the cage's quadratic elements, factored once, and those of the
-// pieces that a part of it is divided into, zero where undivided tetrahedra begin. Together they are the
+// pieces that a part of it is divided into, zero where that part ends. Together they are the
 // elements of a conforming mesh, smaller in that part. With K the stiffness of all of it, P the interpolation
 // of V_H on the pieces and h the nodes of V_h, the latter are eliminated by a small factorization of their
 // own,
@@ -29,7 +29,8 @@ namespace sherd {
 class LocalRefinement {
  public:
   /// `statics`, of quadratic elements, is referred to; `surface`: its mesh's. `divided`: its mesh's
-  /// tetrahedra. Errors: no memory; cancelled. Cost: that of factoring what is divided, O(tets) beside.
+  /// tetrahedra. Errors: no memory; a body too flat for smaller elements; cancelled. Cost: that of factoring
+  /// what is divided, O(tets) beside.
   static Result<LocalRefinement> make(const Statics& statics, const DividedTets& divided,
                                       const SurfaceTree& surface, const Exec& exec);
 
@@ -60,7 +61,7 @@ class LocalRefinement {
   Field solvedPieces(const Field& force) const;
   Field outsideForce(const Field& cage, std::vector<double>& energy) const;
   Field timesSchur(const Field& cage) const;
-  /// Rᵀ M R and what it takes to accelerate nodes: Σ_j M_ij and Σ_j M_ij (X_j − centre), as in Statics.
+  /// What it takes to accelerate nodes: Σ_j M_ij and Σ_j M_ij (X_j − centre), as in Statics.
   struct Inertia {
     std::vector<double> mass;
     Field moment;
