@@ -98,7 +98,9 @@ class LibraryWriter {
     std::string& name = names_[image];
     if (!name.empty()) return name;
     const ImageFile& picture = source_.looks->images[at(image)];
-    name = fmt::format("pieces_texture_{:02}_{}", names_.size(), picture.name);
+    // Names in a glTF file may be longer than a directory's.
+    const std::size_t cut = picture.name.size() - std::min<std::size_t>(picture.name.size(), 100);
+    name = fmt::format("pieces_texture_{:02}_{}", names_.size(), picture.name.substr(cut));
     for (char& c : name)
       if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-') c = '_';
     pictures_.push_back({name, {}, &picture.bytes});

@@ -127,6 +127,16 @@ TEST_F(ExportMaterials, OfAnOldLibraryAreSaidAgainWordForWord) {
   EXPECT_FALSE(std::filesystem::exists(out + "/pieces_texture_01_planks_of_oak.png"));
 }
 
+TEST_F(ExportMaterials, PicturesMayHaveAnyName) {
+  looks.images[0].name = std::string(400, 'x') + "/../\n\xc3\xa9 .png";
+  looks.images[1].name = "";
+  obj(broken());
+  EXPECT_EQ(contentOf(out + "/pieces_texture_02_"), test::dentsPng());
+  const std::string name = "pieces_texture_01_" + std::string(88, 'x') + "_.._____.png";
+  EXPECT_EQ(contentOf(out + '/' + name), test::planksPng());
+  EXPECT_NE(contentOf(out + "/pieces.mtl").find("map_Kd " + name + "\n"), std::string::npos);
+}
+
 TEST_F(ExportMaterials, AreRemovedWhenTheyAreNoLongerWritten) {
   obj(broken());
   const std::size_t files = filesBelow(out).size();
