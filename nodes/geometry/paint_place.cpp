@@ -50,7 +50,8 @@ std::string placeOfPaint(const ScalarGrid& field, const TetMesh& tets) {
   if (!paint.overlaps(body)) return places + reasonBeside(paint, body);
   const double ratio = paint.diagonal() / body.diagonal();
   if (ratio > kMuch) return places + fmt::format("; it is {:.3g} times as large: another unit?", ratio);
-  return places + "; it may be finer than the tetrahedra, and fall between their nodes";
+  return places + "; it may be finer than the tetrahedra, and fall between their nodes" +
+         (ratio < 1 / kMuch ? fmt::format(", or in another unit: it is {:.3g} times as large", ratio) : "");
 }
 
 }  // namespace sherd

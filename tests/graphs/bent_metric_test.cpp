@@ -115,6 +115,47 @@ double shareInTheRing(const std::string& directory) {
   return inside / all;
 }
 
+/// How flat the sheets are: over pairs of pieces, the length of the vector sum of the areas between them over
+/// the sum of areas. 1 where all sheets are flat.
+double flatness(const std::string& directory) {
+  using Corners = std::array<ObjTriangles::Point, 3>;
+  std::map<Corners, std::pair<int, Vec3>> first;  // by sorted corners: its piece and its area
+  std::map<std::pair<int, int>, std::pair<Vec3, double>> between;
+  const auto json = nlohmann::json::parse(contentOf(directory + "/pieces.json"));
+  int number = 0;
+  for (const auto& piece : json["pieces"]) {
+    ++number;
+    for (const auto& t : readObjTriangles(directory + "/" + piece["crack"].get<std::string>()).triangles) {
+      const Vec3 a = Vec3::Map(t[0].data()), b = Vec3::Map(t[1].data()), c = Vec3::Map(t[2].data());
+      const Vec3 area = 0.5 * (b - a).cross(c - a);
+      Corners key = t;
+      std::sort(key.begin(), key.end());
+      const auto [twin, isFirst] = first.emplace(key, std::pair(number, area));
+      if (isFirst) continue;
+      auto& [sum, total] = between.try_emplace({twin->second.first, number}, Vec3::Zero(), 0.0).first->second;
+      sum += area, total += area.norm();
+    }
+  }
+  double vectors = 0, areas = 0;
+  for (const auto& [pair, sheet] : between) vectors += sheet.first.norm(), areas += sheet.second;
+  return vectors / areas;
+}
+
+TEST(SlowBentMetric, RoughnessMakesFlatSheetsUneven) {
+  const ScratchDirectory scratch;
+  const std::string out = scratch.file("out");
+  const ProgramRun run =
+      runProgram("run '" + kFigures + "roughness.json' --target all --var out='" + out + "'" + kQuick);
+  ASSERT_EQ(run.exitCode, 0) << run.output;
+  for (const char* name : {"/roughness_0", "/roughness_0.05"}) expectSound(out + name, kAssets + "wall.obj");
+  EXPECT_TRUE(std::filesystem::exists(out + "/sheet.png"));
+  const double smooth = flatness(out + "/roughness_0"), rough = flatness(out + "/roughness_0.05");
+  RecordProperty("smooth", std::to_string(smooth));
+  RecordProperty("rough", std::to_string(rough));
+  EXPECT_GT(smooth, 1 - 1e-9) << "a convex body's cells have flat faces";
+  EXPECT_LT(rough, 0.992);  // its parts are 9° out of its plane, root mean square
+}
+
 TEST(SlowBentMetric, CracksAreDrawnToAPaintedRing) {
   const ScratchDirectory scratch;
   const std::string out = scratch.file("out");
