@@ -35,6 +35,7 @@ SimulateParams dropped() {
   SimulateParams params;
   params.orientation = Vec3(0, 0, 45);
   params.angularVelocity = Vec3(3, -7, 11);
+  params.refine = false;  // what a mesh gives by itself
   return params;
 }
 
