@@ -122,8 +122,7 @@ class LookReader {
                   "' is not encoded (PNG, JPEG); the pieces are written without it");
       return -1;
     }
-    const std::string name = std::filesystem::path(inside->mFilename.C_Str()).filename().string();
-    return looks_.embedded(path, name,
+    return looks_.embedded(path, inside->mFilename.C_Str(),
                            std::string(reinterpret_cast<const char*>(inside->pcData), inside->mWidth), name_);
   }
 

@@ -76,7 +76,8 @@ Index LooksBuilder::imageFile(const std::string& written, const std::string& mat
 Index LooksBuilder::embedded(const std::string& key, std::string name, std::string bytes,
                              const std::string& material) {
   if (const auto known = known_.find(key); known != known_.end()) return known->second;
-  ImageFile image{std::move(name), std::move(bytes)};
+  std::replace(name.begin(), name.end(), '\\', '/');
+  ImageFile image{fs::path(name).filename().string(), std::move(bytes)};
   if (image.name.empty()) image.name = "texture";
   const std::string ending = extensionOfMimeType(mimeTypeOf(image));
   if (fs::path(image.name).extension().empty()) image.name += ending;

@@ -32,7 +32,7 @@ class LooksBuilder {
   /// The number of a picture that `material` names, −1 where it can't be had. Asked again it gives the same
   /// and says nothing more.
   Index imageFile(const std::string& written, const std::string& material);
-  /// The number of a picture that stands in the mesh file itself, under a name of its own there.
+  /// The number of a picture that stands in the mesh file itself, as `key`; of `name` folders are left out.
   Index embedded(const std::string& key, std::string name, std::string bytes, const std::string& material);
 
   void warn(const std::string& what) const;

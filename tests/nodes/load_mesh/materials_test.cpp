@@ -149,6 +149,21 @@ TEST_F(Materials, PicturesAreKnownByTheirFirstBytes) {
   EXPECT_EQ(extensionOfMimeType("image/jpeg"), ".jpg");
 }
 
+TEST_F(Materials, EmbeddedPicturesHaveBareNamesAndStandOnce) {
+  LooksBuilder looks(scratch.file("a.fbx"), said.exec);
+  const Index first = looks.embedded("*0", "C:\\maps\\a.fbm\\oak.png", test::planksPng(), "wood");
+  EXPECT_EQ(looks.embedded("*0", "", "", "wood"), first);
+  EXPECT_EQ(looks.embedded("*1", "maps/oak.png", test::planksPng(), "wood"), first);
+  EXPECT_EQ(looks.embedded("*2", "", test::dentsPng(), "wood"), 1);
+  EXPECT_EQ(looks.embedded("*3", "", "text", "wood"), -1);
+  EXPECT_TRUE(said.warning("a.fbx: texture 'texture' of material 'wood' is no picture"));
+  looks.set(0, Look{});
+  const auto taken = looks.take();
+  ASSERT_EQ(taken->images.size(), 2u);
+  EXPECT_EQ(taken->images[0].name, "oak.png");
+  EXPECT_EQ(taken->images[1].name, "texture.png");
+}
+
 TEST_F(Materials, DamagedLibrariesDoNotHurt) {
   test::writeCrateObj(folder());
   FileMesh file;
