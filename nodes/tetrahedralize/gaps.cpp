@@ -74,26 +74,22 @@ namespace {
 /// A shell with what is asked of it.
 class Body {
  public:
-  Body(std::span<const Vec3> positions, std::span<const Triangle> triangles, const Shell& shell)
+  Body(std::span<const Vec3> positions, std::span<const Triangle> all, const Shell& shell)
       : positions_(positions) {
     for (const Index t : shell.triangles) {
-      own_.push_back(triangles[at(t)]);
-      for (const Index v : own_.back()) vertices.push_back(v);
+      triangles.push_back(all[at(t)]);
+      for (const Index v : triangles.back()) box.add(positions[at(v)]);
     }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    for (const Index v : vertices) box.add(positions[at(v)]);
   }
   const SurfaceTree& tree() {
-    if (!tree_) tree_.emplace(positions_, own_);
+    if (!tree_) tree_.emplace(positions_, triangles);
     return *tree_;
   }
-  std::vector<Index> vertices;
+  std::vector<Triangle> triangles;
   Box box;
 
  private:
   std::span<const Vec3> positions_;
-  std::vector<Triangle> own_;
   std::optional<SurfaceTree> tree_;
 };
 
@@ -105,29 +101,65 @@ double distanceBetween(const Box& a, const Box& b) {
   return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
 }
 
+/// Looks from a body to another, splitting triangles in four until they are small against the gap.
+class LookBetween {
+ public:
+  LookBetween(Body& to, double touching, double widest, std::size_t most)
+      : to_(to), touching_(touching), widest_(widest), most_(most) {}
+
+  void from(const Vec3& a, const Vec3& b, const Vec3& c) {
+    if (touches || gaps.size() > most_) return;
+    const Vec3 middle = (a + b + c) / 3;
+    const double radius = std::sqrt(
+        std::max({(a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()}));
+    if (distanceTo(to_.box, middle) > widest_ + radius) return;
+    const SurfacePoint nearest = to_.tree().closest(middle);
+    if (nearest.distance > widest_ + radius) return;
+    touches = nearest.distance <= touching_;
+    if (radius <= 0.5 * nearest.distance) {
+      if (nearest.distance <= widest_)
+        gaps.push_back({middle, nearest.point, nearest.distance, std::numeric_limits<double>::infinity()});
+      return;
+    }
+    const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+    from(a, ab, ca);
+    from(ab, b, bc);
+    from(ca, bc, c);
+    from(ab, bc, ca);
+  }
+
+  std::vector<Gap> gaps;
+  bool touches = false;
+
+ private:
+  Body& to_;
+  double touching_, widest_;
+  std::size_t most_;
+};
+
 }  // namespace
 
-std::optional<Gap> narrowestBetweenBodies(std::span<const Vec3> positions,
-                                          std::span<const Triangle> triangles,
-                                          const std::vector<Shell>& shells, double touching,
-                                          const Exec& exec) {
+BodyGaps gapsBetweenBodies(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                           const std::vector<Shell>& shells, double touching, double widest, std::size_t most,
+                           const Exec& exec) {
   std::vector<Body> bodies;
   for (const Shell& shell : shells)
     if (shell.volume > 0) bodies.emplace_back(positions, triangles, shell);
-  std::optional<Gap> best;
-  const auto isNarrower = [&](double width) { return !best || width < best->width; };
+  BodyGaps found;
   for (std::size_t a = 0; a < bodies.size(); ++a)
     for (std::size_t b = 0; b < bodies.size() && !exec.cancelled(); ++b) {
-      if (a == b || !isNarrower(distanceBetween(bodies[a].box, bodies[b].box))) continue;
-      for (const Index v : bodies[a].vertices) {
-        const Vec3& p = positions[at(v)];
-        if (!isNarrower(distanceTo(bodies[b].box, p))) continue;
-        const SurfacePoint nearest = bodies[b].tree().closest(p);
-        if (nearest.distance > touching && isNarrower(nearest.distance))
-          best = Gap{p, nearest.point, nearest.distance, std::numeric_limits<double>::infinity()};
-      }
+      if (a == b || distanceBetween(bodies[a].box, bodies[b].box) > widest) continue;
+      LookBetween look(bodies[b], touching, widest, most);
+      for (const Triangle& t : bodies[a].triangles)
+        look.from(positions[at(t[0])], positions[at(t[1])], positions[at(t[2])]);
+      if (look.touches) continue;
+      found.isTooMany = found.isTooMany || look.gaps.size() > most;
+      found.gaps.insert(found.gaps.end(), look.gaps.begin(), look.gaps.end());
     }
-  return best;
+  for (const Gap& gap : found.gaps)
+    if (!found.narrowest || gap.width < found.narrowest->width) found.narrowest = gap;
+  found.isTooMany = found.isTooMany || found.gaps.size() > most;
+  return found;
 }
 
 }  // namespace sherd

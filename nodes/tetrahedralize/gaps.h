@@ -32,12 +32,19 @@ struct GapSearch {
 std::vector<Gap> findGaps(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                           const GapSearch& search, const Exec& exec);
 
-/// The shortest way between two bodies (shells of positive volume) through the outside, from a vertex of one,
-/// among those longer than `touching`; none for a single body. Cost O(n log n) and more where very many
-/// bodies are near each other.
-std::optional<Gap> narrowestBetweenBodies(std::span<const Vec3> positions,
-                                          std::span<const Triangle> triangles,
-                                          const std::vector<Shell>& shells, double touching,
-                                          const Exec& exec);
+struct BodyGaps {
+  std::vector<Gap> gaps;   ///< all with an infinite detour
+  bool isTooMany = false;  ///< looking ended before all were found
+  std::optional<Gap> narrowest;
+};
+
+/// Gaps between bodies (shells of positive volume) no wider than `widest`, from points of one to the nearest
+/// of the other, so densely that each stands for a patch of the surface half as wide as the gap. Bodies
+/// nearer than `touching` count as touching: there is no gap between them. Ends when there are more than
+/// `most`: as many patches, then, would take as many edges of the cage. Cost O(n log n) for each pair of
+/// bodies that near.
+BodyGaps gapsBetweenBodies(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                           const std::vector<Shell>& shells, double touching, double widest, std::size_t most,
+                           const Exec& exec);
 
 }  // namespace sherd

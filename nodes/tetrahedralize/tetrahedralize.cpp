@@ -26,6 +26,10 @@ constexpr double kMoreTets = 4;          ///< times as many where none of these 
 constexpr int kEmptyRuns = 6;            ///< runs of Mesh_3 that may find nothing to fill, each with …
 constexpr double kShorterEdge = 0.75;    ///< … so much shorter edges than the one before
 constexpr double kPerturbBound = 12, kExudeBound = 14;  ///< degrees
+/// Of a needle, whose surface has less than `kNeedle` edges times the diagonal, each node neighbours hundreds
+/// of cells outside, and perturbation takes most of all time; exudation alone leaves angles that serve.
+constexpr double kNeedle = 2;
+constexpr std::size_t kManyTets = 2000;
 constexpr std::size_t kMostTets = 20;          ///< times the number aimed at, that gaps may ask for …
 constexpr std::size_t kAlwaysAllowed = 40000;  ///< … or this many
 
@@ -105,6 +109,7 @@ class CageBuilder {
     nominal_ = std::min(nominal_, 0.25);  // at least a few edges across the object
     exec_.progress(0.02);
     offBy_.clear();
+    emptyEdges_.clear();
     SHERD_CHECK(lookForGaps());
     SHERD_ASSIGN(VolumeMesh mesh, searchEdgeLength());
     const auto hasTopology = [this](const Tetrahedra& tetrahedra) {
@@ -114,7 +119,8 @@ class CageBuilder {
     };
     for (int tries = 0; tries < kTries; ++tries) {
       exec_.progress(0.6 + 0.06 * tries);
-      SHERD_CHECK(mesh.removeSlivers(kPerturbBound, kExudeBound, hasTopology, exec_));
+      const bool isNeedle = mesh.tetCount() > kManyTets && surface_.area < kNeedle * sizes_.edgeLength;
+      SHERD_CHECK(mesh.removeSlivers(isNeedle ? 0 : kPerturbBound, kExudeBound, hasTopology, exec_));
       TetMesh cage = toMetres(mesh.extract(), surface_);
       SHERD_ASSIGN(bool good, verify(cage));
       if (exec_.cancelled()) return cancelledError();
@@ -144,6 +150,7 @@ class CageBuilder {
     sizes_.open.clear();
     for (const Gap& gap : gaps_)
       if (isWorthOpening(gap, smallGapsToo_ ? 0.3 : 1)) sizes_.open.push_back(gap);
+    if (between_) sizes_.open.insert(sizes_.open.end(), between_->gaps.begin(), between_->gaps.end());
   }
   bool isWorthOpening(const Gap& gap, double edges) const {
     return gap.detour > std::max(edges * nominal_, 1.3 * gap.width);
@@ -164,6 +171,7 @@ class CageBuilder {
     for (int run = 1;; ++run) {
       SHERD_ASSIGN(VolumeMesh mesh, meshWithEdges());
       if (mesh.tetCount() > 0) return mesh;
+      emptyEdges_.push_back(sizes_.edgeLength);
       if (run == kEmptyRuns)
         return failure(fmt::format("the body is too thin or too small for edges of {:.3g} m: no tetrahedron "
                                    "fits in",
@@ -174,15 +182,25 @@ class CageBuilder {
     }
   }
 
+  /// The edge length that meshOnce() comes down to from this one, as far as earlier runs tell.
+  double afterEmptyRuns(double edgeLength) const {
+    while (std::find(emptyEdges_.begin(), emptyEdges_.end(), edgeLength) != emptyEdges_.end())
+      edgeLength *= kShorterEdge;
+    return edgeLength;
+  }
+
   Result<VolumeMesh> meshWithEdges() {
     field_ = std::make_unique<CageField>(surface_, tree_, sizes_, levelSet_, exec_);
     if (exec_.cancelled()) return cancelledError();
-    const std::size_t most = std::max(kAlwaysAllowed, kMostTets * static_cast<std::size_t>(aimedTets()));
-    if (const double expected = field_->expectedTets(); expected > static_cast<double>(most))
+    if (const double expected = field_->expectedTets(); expected > static_cast<double>(mostTets()))
       return tooMany(expected);
     const VolumeToMesh volume = field_->volume();
     if (exec_.cancelled()) return cancelledError();
     return VolumeMesh::refine(volume, exec_);
+  }
+
+  std::size_t mostTets() const {
+    return std::max(kAlwaysAllowed, kMostTets * static_cast<std::size_t>(aimedTets()));
   }
 
   double aimedTets() const {
@@ -220,8 +238,8 @@ class CageBuilder {
       lastEdge = sizes_.edgeLength, lastMeasure = measure;
       const double next =
           std::min(sizes_.edgeLength * std::pow(goal / measure, 1 / exponent), kLargestEdge * nominal_);
-      if (next == sizes_.edgeLength)
-        return mesh;  // gaps ask for more tetrahedra, and no larger edge is sensible
+      if (afterEmptyRuns(next) == sizes_.edgeLength)
+        return mesh;  // gaps or thin parts ask for more tetrahedra, and no larger edge is sensible
       sizes_.edgeLength = next;
     }
   }
@@ -326,20 +344,27 @@ class CageBuilder {
     return false;
   }
 
-  /// The cage joins bodies. Between some there may be no room for it, however fine it is.
+  /// The cage joins bodies. Gaps between these that no look along a normal saw are kept open from now on, if
+  /// there is room for a cage in them.
   bool wantBodiesApart(const TetMesh& cage, const std::vector<std::pair<bool, int>>& got) {
-    if (!between_)
-      between_ =
-          narrowestBetweenBodies(surface_.positions, surface_.triangles, surface_.shells, kTouching, exec_);
-    isTooNarrow_ = between_ && between_->width < kHopelessWidth * nominal_;
-    const bool bridged = !isTooNarrow_ && refineBridges(cage);
+    const bool isFirst = !between_;
+    if (isFirst)
+      between_ = gapsBetweenBodies(surface_.positions, surface_.triangles, surface_.shells, kTouching,
+                                   nominal_, mostTets() / kTetsAtGap, exec_);
+    const std::optional<Gap>& narrowest = between_->narrowest;
+    isTooNarrow_ = narrowest && (between_->isTooMany || narrowest->width < kNarrowestGap);
     problem_ = failure(
         fmt::format(
             "the cage has {} where the surface has {}{}", describeTopology(got), describeTopology(wanted_),
-            between_ ? "; it closes " + gapText(*between_) + " between two bodies: " + edgesText(*between_)
-                     : ""),
-        "join the bodies or move them apart in the model, or ask for a shorter `edge_length`", "mesh");
-    return isTooNarrow_ ? false : wantFiner(bridged);
+            narrowest ? "; it closes " + gapText(*narrowest) + " between two bodies: " + edgesText(*narrowest)
+                      : ""),
+        "join the bodies or move them apart in the model", "mesh");
+    if (isTooNarrow_) return false;
+    if (isFirst && narrowest) {
+      chooseGaps();
+      return false;
+    }
+    return wantFiner(refineBridges(cage));
   }
 
   std::string closedGapText(const TetMesh& cage) const {
@@ -387,8 +412,9 @@ class CageBuilder {
     return cage;
   }
 
-  static constexpr double kMostAskedFor = 5e6;         ///< tetrahedra
-  static constexpr double kHopelessWidth = 1.0 / 500;  ///< nominal edge lengths of a gap between bodies
+  static constexpr double kMostAskedFor = 5e6;   ///< tetrahedra
+  static constexpr std::size_t kTetsAtGap = 10;  ///< that keeping it open takes, at least
+  static constexpr double kNarrowestGap = 1e-5;  ///< of the diagonal, between bodies
   static constexpr double kNarrow = 0.25;      ///< nominal edge lengths that an edge in a gap is shorter than
   static constexpr double kLargestEdge = 1.5;  ///< nominal edge lengths that the search may go up to
 
@@ -406,12 +432,14 @@ class CageBuilder {
   std::shared_ptr<const LevelSet> levelSet_;
   std::unique_ptr<CageField> field_;
   std::optional<Error> problem_;
+  std::vector<double>
+      emptyEdges_;          ///< edge lengths with which Mesh_3 saw nothing to fill, while they are sought
   std::vector<int> offBy_;  ///< what topology was off by, each time that it was
   bool bridgesAreNarrow_ = false;
-  std::optional<Vec3> bridge_;    ///< a place where the last cage spanned a gap
-  std::optional<Gap> between_;    ///< the narrowest between two bodies, once it was looked for
-  bool isTooNarrow_ = false;      ///< for any cage with about as many tetrahedra
-  std::optional<TetMesh> spare_;  ///< with other handles or voids than the surface, but sound
+  std::optional<Vec3> bridge_;       ///< a place where the last cage spanned a gap
+  std::optional<BodyGaps> between_;  ///< once they were looked for
+  bool isTooNarrow_ = false;         ///< for any cage with about as many tetrahedra
+  std::optional<TetMesh> spare_;     ///< with other handles or voids than the surface, but sound
   std::vector<std::pair<bool, int>> spareTopology_;
 };
 

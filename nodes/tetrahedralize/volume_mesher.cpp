@@ -134,6 +134,7 @@ Result<void> VolumeMesh::removeSlivers(double perturbBound, double exudeBound,
   try {
     const Complex before = impl_->complex;
     for (const double share : {1.0, 0.7}) {
+      if (!(perturbBound > 0)) break;
       CGAL::perturb_mesh_3(impl_->complex, *impl_->domain, option::time_limit = 0,
                            option::sliver_criterion = SliverCriterion(
                                share * perturbBound, impl_->complex.triangulation(), exec.cancel));

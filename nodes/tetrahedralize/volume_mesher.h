@@ -39,7 +39,8 @@ class VolumeMesh {
   std::size_t tetCount() const;
   /// Moves and weights nodes against slivers: perturbation, then exudation, up to the given dihedral angles
   /// (degrees), without limits of time, since those would make the result depend on the clock. Perturbation
-  /// may pinch the boundary: where `good` says no to what it made of a good mesh, it is taken back.
+  /// may pinch the boundary: where `good` says no to what it made of a good mesh, it is taken back. A bound
+  /// of 0 leaves it out.
   Result<void> removeSlivers(double perturbBound, double exudeBound,
                              const std::function<bool(const Tetrahedra&)>& good, const Exec& exec);
   Tetrahedra extract() const;

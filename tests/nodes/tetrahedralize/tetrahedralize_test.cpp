@@ -100,6 +100,15 @@ TEST(Tetrahedralize, KeepsComponentsApart) {
 
 TEST(Tetrahedralize, HoldsAThinPlate) { expectGood(cageOf(box(Vec3::Zero(), Vec3(1, 1, 0.01)), 500), 1, 2); }
 
+TEST(Tetrahedralize, HoldsANeedle) {  // in seconds
+  const auto cage = cageOf(box(Vec3::Zero(), Vec3(1, 0.002, 0.002)), 1000);
+  expectGood(cage, 1, 2);
+}
+
+TEST(Tetrahedralize, NamesTheEdgesThatWouldKeepAGapOpen) {
+  EXPECT_TRUE(has(errorOf(slitBlock(0.001)), "edges of about 0.001 m there would keep it open"));
+}
+
 TEST(Tetrahedralize, FillsWhatIsThinnerThanItsEdgesSee) {
   TriMesh mesh;  // a tetrahedron a hundredth as thick as long
   mesh.positions = {Vec3(2.89, 6.34, 8.81), Vec3(1.95, 0, 0), Vec3(4.84, 6.32, 10.38), Vec3(0, 7.9, 12.13)};

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "base/rng.h"
+#include "support/said.h"
 #include "surfaces.h"
 #include "tetrahedralize/contacts.h"
+#include "tetrahedralize/gaps.h"
 #include "tetrahedralize/shells.h"
 
 namespace sherd::test {
@@ -78,12 +80,38 @@ TEST(TetrahedralizeTouching, TwoBoxesThatRepairDrewApartHaveOneCage) {
 }
 
 TEST(TetrahedralizeTouching, BodiesTooNearForAnyCageAreNamedAtOnce) {
-  const auto cage =
-      cageOf(joined(box(Vec3::Zero(), Vec3::Ones()), box(Vec3(1 + 1e-4, 1 + 1e-4, 0), Vec3(2, 2, 1))), 300);
+  Said said;
+  const TriMesh mesh =
+      joined(box(Vec3::Zero(), Vec3::Ones()), box(Vec3(1 + 2e-4, 1 + 2e-4, 0), Vec3(2, 2, 1)));
+  const auto cage = tetrahedralize(shared(mesh), {.tets = 300}, said.exec);
   ASSERT_FALSE(cage.ok());
   const std::string text = cage.error().text();
-  EXPECT_NE(text.find("the gap of 0.000141 m at (1.00005, 1.00005, "), std::string::npos) << text;
-  EXPECT_NE(text.find("edges of about 0.00014 m there would keep it open"), std::string::npos) << text;
+  EXPECT_NE(text.find("closes the gap of 0.000"), std::string::npos) << text;
+  EXPECT_NE(text.find("between two bodies: edges of about 0.000"), std::string::npos) << text;
+  EXPECT_FALSE(said.info("meshing again"));
+}
+
+TEST(TetrahedralizeTouching, BodiesThatAreNearInAPlaceAreKeptApartThere) {
+  const double gap = 0.01;
+  expectGood(
+      cageOf(joined(box(Vec3::Zero(), Vec3::Ones()), box(Vec3::Constant(1 + gap), Vec3(2, 2, 2))), 300), 2,
+      4);
+}
+
+TEST(TetrahedralizeTouching, GapsBetweenBodies) {
+  const auto gapsOf = [](double gap, double widest, std::size_t most) {
+    const TriMesh mesh = joined(box(Vec3::Zero(), Vec3::Ones()), box(Vec3(1 + gap, 0, 0), Vec3(2, 1, 1)));
+    return gapsBetweenBodies(mesh.positions, mesh.triangles, *splitShells(mesh.positions, mesh.triangles),
+                             1e-6, widest, most, {});
+  };
+  const BodyGaps found = gapsOf(0.1, 0.2, 5000);
+  EXPECT_FALSE(found.isTooMany);
+  ASSERT_TRUE(found.narrowest);
+  EXPECT_NEAR(found.narrowest->width, 0.1, 1e-12);
+  EXPECT_GT(found.gaps.size(), 2 * 100u);  // two faces of 1 m², each by patches of 0.1 m or less
+  EXPECT_TRUE(gapsOf(0.1, 0.05, 5000).gaps.empty());
+  EXPECT_TRUE(gapsOf(1e-3, 0.2, 5000).isTooMany);
+  EXPECT_FALSE(gapsOf(1e-7, 0.2, 5000).narrowest) << "they touch";
 }
 
 }  // namespace
