@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "bench/measured_table.h"
 
 namespace sherd::bench {
@@ -47,7 +48,7 @@ int runParts(int argc, char** argv, const std::string& program, const std::strin
   for (const Part& part : parts) {
     if (!options.parts.empty() && options.parts.count(part.name) == 0) continue;
     std::string report;
-    part.measure(options, report);
+    inArena([&] { part.measure(options, report); });  // as the evaluator does
     const std::string section = program + " " + part.name;
     writeSection(options.out / "results.md", section, report);
     if (!options.results.empty()) writeSection(options.results, section, report);
