@@ -352,7 +352,12 @@ class CageBuilder {
       between_ = gapsBetweenBodies(surface_.positions, surface_.triangles, surface_.shells, kTouching,
                                    nominal_, mostTets() / kTetsAtGap, exec_);
     const std::optional<Gap>& narrowest = between_->narrowest;
-    isTooNarrow_ = narrowest && (between_->isTooMany || narrowest->width < kNarrowestGap);
+    // Those that are known have had their share; what is wrong there, finer meshing may mend.
+    const bool isKnown = narrowest && std::any_of(gaps_.begin(), gaps_.end(), [&](const Gap& gap) {
+                           return gap.width <= 2 * narrowest->width;
+                         });
+    if (isFirst && isKnown) between_->gaps.clear();
+    isTooNarrow_ = !isKnown && narrowest && (between_->isTooMany || narrowest->width < kNarrowestGap);
     problem_ = failure(
         fmt::format(
             "the cage has {} where the surface has {}{}", describeTopology(got), describeTopology(wanted_),
@@ -360,7 +365,7 @@ class CageBuilder {
                       : ""),
         "join the bodies or move them apart in the model", "mesh");
     if (isTooNarrow_) return false;
-    if (isFirst && narrowest) {
+    if (isFirst && narrowest && !isKnown) {
       chooseGaps();
       return false;
     }
