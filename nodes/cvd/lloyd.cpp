@@ -16,7 +16,7 @@ constexpr std::size_t kMaxBounds = std::size_t{1} << 26;
 /// moves.
 constexpr double kSlack = 1e-10;
 
-constexpr std::size_t kTaskWork = std::size_t{1} << 18;  ///< about how many operations are worth a task
+constexpr std::size_t kTaskWork = std::size_t{1} << 16;  ///< about how many operations are worth a task
 
 /// How many items of so many operations each are worth a task.
 std::size_t blockOf(std::size_t operations) { return std::max<std::size_t>(1, kTaskWork / (operations + 1)); }
@@ -32,17 +32,14 @@ struct Lloyd::Impl {
 
   std::vector<double> x, p;  ///< padded coordinates of nodes and sites, one after another
   std::vector<Index> label;
-  std::vector<double> distance2;            ///< per node, to its site, where not `late`
-  std::vector<double> limit;                ///< per node: above that distance, just above where not `late`
-  std::vector<char> late;                   ///< per node: its site has moved since its distance was taken
+  std::vector<double> distance2;            ///< per node, to its site
+  std::vector<double> limit;                ///< per node: just above that distance
   std::vector<std::vector<Index>> members;  ///< per cell its nodes, ascending
 
-  std::vector<double> radius;  ///< per cell: the largest limit of its nodes, −1 without nodes
-  std::vector<char> moved;     ///< per site: since labels were last exact
-  std::vector<double> step;    ///< per site: how far it has moved since then, m
-  std::vector<char> hasLate;   ///< per cell: some of its nodes may be late
-  std::vector<char> dirty;     ///< per cell: it has changed since its centroid was taken
-  std::vector<char> resized;   ///< per cell: it has changed since radius2 was
+  std::vector<double> radius2;  ///< per cell: the largest distance2 of its nodes
+  std::vector<char> moved;      ///< per site: since labels were last exact
+  std::vector<char> dirty;      ///< per cell: it has changed since its centroid was taken
+  std::vector<char> resized;    ///< per cell: it has changed since radius2 was
   /// A site that may take nodes from a cell; half its distance to the cell's site.
   struct Contender {
     double half;
@@ -66,8 +63,7 @@ struct Lloyd::Impl {
         x(nodes * size, 0.0),
         label(nodes, -1),
         distance2(nodes, std::numeric_limits<double>::infinity()),
-        limit(distance2),
-        late(nodes, 0) {
+        limit(distance2) {
     for (std::size_t n = 0; n < nodes; ++n)
       std::copy_n(e.coordinates.col(static_cast<Eigen::Index>(n)).data(), dimensions, &x[n * size]);
   }
@@ -78,9 +74,7 @@ struct Lloyd::Impl {
   void setDistance(std::size_t n, double squared) {
     distance2[n] = squared;
     limit[n] = std::sqrt(squared) * (1 + kSlack);
-    late[n] = 0;
   }
-  void takeDistance(std::size_t n) { setDistance(n, squaredDistanceTo(n, at(label[n]))); }
   float* boundsOf(std::size_t n) { return &bound[n * capacity]; }
   /// Keeps what is now known of a distance: a little less, so that rounding to float leaves a bound.
   void keepBound(std::size_t n, std::size_t j, double distance) {
@@ -99,13 +93,10 @@ struct Lloyd::Impl {
   void addSite(const Eigen::Ref<const Eigen::VectorXd>& position, const Exec& exec);
   void reserveBounds();
   bool assign(const Exec& exec);
-  void takeLateDistances(const Exec& exec);
-  void leaveCell(Index n, const std::vector<Contender>& others);
   template <class Touched>
   std::vector<Chunk> chunksOf(const Touched& touched) const;
   template <class Body>
-  void forChunks(const Exec& exec, const std::vector<Chunk>& chunks, std::size_t operations,
-                 const Body& body);
+  void forChunks(const Exec& exec, const std::vector<Chunk>& chunks, const Body& body);
   void measureCells(const Exec& exec);
   void findContenders(const Exec& exec);
   void compare(std::size_t n, std::size_t j);
@@ -142,10 +133,8 @@ void Lloyd::Impl::addSite(const Eigen::Ref<const Eigen::VectorXd>& position, con
   moved.push_back(1);
   dirty.push_back(1);
   resized.push_back(1);
-  step.push_back(0);
-  hasLate.push_back(0);
   drift.push_back(0);
-  radius.push_back(-1);
+  radius2.push_back(-1);
   members.emplace_back();
   if (j == 0) {
     std::fill(label.begin(), label.end(), 0);
@@ -153,7 +142,6 @@ void Lloyd::Impl::addSite(const Eigen::Ref<const Eigen::VectorXd>& position, con
   }
   if (allStale) return;
   assign(exec);
-  takeLateDistances(exec);
 }
 
 /// Compares node n with site j.
@@ -183,51 +171,33 @@ std::vector<Lloyd::Impl::Chunk> Lloyd::Impl::chunksOf(const Touched& touched) co
   return chunks;
 }
 
-/// body(number of the chunk, chunk), of so many operations a node, in parallel where that is worth it.
+/// body(number of the chunk, chunk), in parallel where that is worth it.
 template <class Body>
-void Lloyd::Impl::forChunks(const Exec& exec, const std::vector<Chunk>& chunks, std::size_t operations,
-                            const Body& body) {
+void Lloyd::Impl::forChunks(const Exec& exec, const std::vector<Chunk>& chunks, const Body& body) {
   std::size_t total = 0;
   for (const Chunk& c : chunks) total += c.end - c.begin;
-  const std::size_t tasks = 1 + total * operations / kTaskWork;
+  const std::size_t tasks = 1 + total * 4 * size / kTaskWork;
   parallelFor(exec, chunks.size(), (chunks.size() + tasks - 1) / tasks,
               [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) body(i, chunks[i]);
               });
 }
 
-/// Limits of nodes whose own site has moved, and radii of the cells that have changed. The distances
-/// themselves are taken where a comparison hangs on them, and at the end.
+/// Distances of nodes whose own site has moved, and radii of the cells that have changed.
 void Lloyd::Impl::measureCells(const Exec& exec) {
   const std::vector<Chunk> chunks = chunksOf([&](std::size_t c) { return moved[c] || resized[c]; });
   std::vector<double> largest(chunks.size(), -1);
-  forChunks(exec, chunks, 4, [&](std::size_t i, const Chunk& chunk) {
-    const std::size_t c = at(chunk.cell);
-    const double way = step[c] * (1 + kSlack);
+  forChunks(exec, chunks, [&](std::size_t i, const Chunk& chunk) {
     for (std::size_t k = chunk.begin; k < chunk.end; ++k) {
-      const std::size_t n = at(members[c][k]);
-      if (moved[c]) limit[n] = (limit[n] + way) * (1 + 0x1p-50), late[n] = 1;
-      largest[i] = std::max(largest[i], limit[n]);
+      const std::size_t n = at(members[at(chunk.cell)][k]);
+      if (moved[at(chunk.cell)]) setDistance(n, squaredDistanceTo(n, at(chunk.cell)));
+      largest[i] = std::max(largest[i], distance2[n]);
     }
   });
   for (std::size_t c = 0; c < siteCount; ++c)
-    if (moved[c] || resized[c]) {
-      radius[c] = -1;
-      hasLate[c] = hasLate[c] || moved[c];
-      resized[c] = 0;
-    }
+    if (moved[c] || resized[c]) radius2[c] = -1, resized[c] = 0;
   for (std::size_t i = 0; i < chunks.size(); ++i)
-    radius[at(chunks[i].cell)] = std::max(radius[at(chunks[i].cell)], largest[i]);
-}
-
-void Lloyd::Impl::takeLateDistances(const Exec& exec) {
-  const std::vector<Chunk> chunks = chunksOf([&](std::size_t c) { return hasLate[c] != 0; });
-  forChunks(exec, chunks, 4 * size, [&](std::size_t, const Chunk& chunk) {
-    for (std::size_t k = chunk.begin; k < chunk.end; ++k)
-      if (const std::size_t n = at(members[at(chunk.cell)][k]); late[n]) takeDistance(n);
-  });
-  for (std::size_t c = 0; c < siteCount; ++c)
-    if (hasLate[c]) hasLate[c] = 0, resized[c] = 1;
+    radius2[at(chunks[i].cell)] = std::max(radius2[at(chunks[i].cell)], largest[i]);
 }
 
 /// Per cell the sites that may be nearer to one of its nodes than its own: those within twice its radius (a
@@ -241,8 +211,8 @@ void Lloyd::Impl::findContenders(const Exec& exec) {
   parallelFor(exec, siteCount, blockOf(siteCount * size), [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       contenders[c].clear();
-      if (radius[c] < 0) continue;
-      const double reach2 = 4 * radius[c] * radius[c] * (1 + kSlack);
+      if (radius2[c] < 0) continue;
+      const double reach2 = 4 * radius2[c] * (1 + kSlack);
       const auto look = [&](std::size_t j) {
         if (j == c) return;
         const double apart2 = squaredDistance(&p[c * size], &p[j * size], size);
@@ -259,38 +229,24 @@ void Lloyd::Impl::findContenders(const Exec& exec) {
   });
 }
 
-/// Lets a node go to the nearest of the others if that is nearer than its own site.
-void Lloyd::Impl::leaveCell(Index node, const std::vector<Contender>& others) {
-  const std::size_t n = at(node);
-  double own = limit[n];
-  for (const Contender& other : others) {
-    if (other.half > own) break;
-    if (isRuledOut(n, at(other.site))) continue;
-    if (late[n]) {
-      takeDistance(n);
-      own = limit[n];
-      if (other.half > own) break;
-      if (isRuledOut(n, at(other.site))) continue;
-    }
-    compare(n, at(other.site));
-  }
-}
-
 /// Makes labels exact. Returns whether one changed. Cost: where sites moved, and next to that.
 bool Lloyd::Impl::assign(const Exec& exec) {
   measureCells(exec);
   findContenders(exec);
   const std::vector<Chunk> chunks = chunksOf([&](std::size_t c) { return !contenders[c].empty(); });
   std::vector<std::vector<Index>> leaving(chunks.size());
-  forChunks(exec, chunks, size, [&](std::size_t i, const Chunk& chunk) {
+  forChunks(exec, chunks, [&](std::size_t i, const Chunk& chunk) {
     for (std::size_t k = chunk.begin; k < chunk.end; ++k) {
       const Index n = members[at(chunk.cell)][k];
-      leaveCell(n, contenders[at(chunk.cell)]);
+      const double own = limit[at(n)];
+      for (const Contender& other : contenders[at(chunk.cell)]) {
+        if (other.half > own) break;
+        if (!isRuledOut(at(n), at(other.site))) compare(at(n), at(other.site));
+      }
       if (label[at(n)] != chunk.cell) leaving[i].push_back(n);
     }
   });
   std::fill(moved.begin(), moved.end(), 0);
-  std::fill(step.begin(), step.end(), 0.0);
   allStale = false;
   return moveNodes(leaving);
 }
@@ -342,6 +298,7 @@ bool Lloyd::Impl::centroid(const std::vector<Index>& members, std::vector<double
 
 /// Moves the sites of cells that changed, but not those pinned. Returns the farthest move, m.
 double Lloyd::Impl::moveToCentroids(const Exec& exec) {
+  std::vector<double> step(siteCount, 0.0);
   parallelFor(exec, siteCount, blockOf(nodes * size / siteCount), [&](std::size_t begin, std::size_t end) {
     std::vector<double> target;
     for (std::size_t j = begin; j < end; ++j) {
@@ -360,7 +317,6 @@ bool Lloyd::Impl::assignByFlooding(const NodeGraph& graph, const Exec& exec) {
   const std::vector<Index> before = label;
   const std::vector<Index> flooded = floodLabels({x.data(), p.data(), nodes, siteCount, size}, graph);
   assign(exec);  // the nearest sites, for nodes that no flood has reached
-  takeLateDistances(exec);
   for (std::size_t n = 0; n < nodes; ++n) {
     if (flooded[n] < 0) continue;
     label[n] = flooded[n];
@@ -401,9 +357,7 @@ void Lloyd::addSite(const Eigen::Ref<const Eigen::VectorXd>& position, const Exe
 
 Result<Lloyd::End> Lloyd::run(const LloydLimits& limits, const Exec& exec) {
   if (impl_->allStale) impl_->assign(exec);
-  const Result<End> end = impl_->iterate(limits, exec, [&] { return impl_->assign(exec); });
-  impl_->takeLateDistances(exec);
-  return end;
+  return impl_->iterate(limits, exec, [&] { return impl_->assign(exec); });
 }
 
 Result<Lloyd::End> Lloyd::runFlood(const LloydLimits& limits, const Exec& exec) {
