@@ -8,6 +8,7 @@
 #include "tessellate/first_numbers.h"
 
 namespace sherd {
+
 CellParts::CellParts(const TetMesh& tets, const Sheets& sheets, const Arrangement& arrangement,
                      const ClippedMeshes& meshes, std::span<const unsigned char> isCut, const Exec& exec)
     : tets_(tets), sheets_(sheets), arrangement_(arrangement), meshes_(meshes), exec_(exec) {
@@ -105,8 +106,7 @@ void CellParts::nameCells() {
   }
 }
 
-/// Uncut triangles that are neighbours lie in one cell; those beside a cut one meet its parts over the
-/// edge.
+/// Uncut triangles that are neighbours lie in one cell; those beside a cut one meet its parts over the edge.
 void CellParts::joinUncut(std::span<const unsigned char> isCut, std::vector<Side>& sides) {
   constexpr std::size_t block = 64;
   const std::size_t n = whole_.size();

@@ -10,29 +10,16 @@ import sys
 import bpy
 import numpy as np
 
-# Debian 12 has Blender 3.4 beside NumPy 1.24, which no longer has a name that Blender's glTF importer uses.
-if not hasattr(np, "bool"):
-    np.bool = bool
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.dont_write_bytecode = True  # leaves nothing beside the sources
+import expectations
+from expectations import expect, expect_near, faults
 
 (DIRECTORY,) = sys.argv[sys.argv.index("--") + 1:]
 SIZE = np.array([0.6, 0.3, 0.4])
 # The four corners of a side as it is laid out, by their number's bits x, y and z.
 SIDES = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
 PLANKS = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 0]]  # rows from the top
-faults = []
-checks = 0
-
-
-def expect(holds, what):
-    global checks
-    checks += 1
-    if not holds:
-        faults.append(what)
-
-
-def expect_near(found, wanted, tolerance, what):
-    error = np.abs(np.asarray(found, float) - np.asarray(wanted, float)).max() if np.size(found) else 0
-    expect(error <= tolerance, f"{what}: {error:.3g} apart, {tolerance:.3g} allowed")
 
 
 def clear():
@@ -202,7 +189,7 @@ check_glb("whole")
 check_glb("piece")
 check_obj()
 check_hulls()
-print(f"{checks} checks, {len(faults)} faults")
+print(f"{expectations.checks} checks, {len(faults)} faults")
 for fault in faults[:50]:
     print("FAULT", fault)
-sys.exit(1 if faults or checks < 150 else 0)
+sys.exit(1 if faults or expectations.checks < 150 else 0)

@@ -11,26 +11,13 @@ import bpy
 import numpy as np
 from mathutils.kdtree import KDTree
 
-# Debian 12 has Blender 3.4 beside NumPy 1.24, which no longer has a name that Blender's glTF importer uses.
-if not hasattr(np, "bool"):
-    np.bool = bool
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.dont_write_bytecode = True  # leaves nothing beside the sources
+import expectations
+from expectations import expect, expect_near, faults
 
 SOURCE, DIRECTORY = sys.argv[sys.argv.index("--") + 1:]
 LEAST_SCALE = 0.9063  # of the generated UVs, as nodes/geometry/surface_charts.h promises
-faults = []
-checks = 0
-
-
-def expect(holds, what):
-    global checks
-    checks += 1
-    if not holds:
-        faults.append(what)
-
-
-def expect_near(found, wanted, tolerance, what):
-    error = np.abs(np.asarray(found, float) - np.asarray(wanted, float)).max() if np.size(wanted) else 0
-    expect(error <= tolerance, f"{what}: {error:.3g} apart, {tolerance:.3g} allowed")
 
 
 def turned(vectors):
@@ -254,7 +241,7 @@ check_glb(PIECES)
 for piece_ in PIECES[:3] + PIECES[-1:]:
     check_obj(piece_)
     check_ply(piece_)
-print(f"{checks} checks, {len(faults)} faults")
+print(f"{expectations.checks} checks, {len(faults)} faults")
 for fault in faults[:50]:
     print("FAULT", fault)
-sys.exit(1 if faults or checks < 500 else 0)
+sys.exit(1 if faults or expectations.checks < 500 else 0)
