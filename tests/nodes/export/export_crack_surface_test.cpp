@@ -1,13 +1,9 @@
 #include "export/export_crack_surface.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
-#include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -15,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "graph/node_type.h"
+#include "nodes/export/export_fixture.h"
 #include "support/fragment_families.h"
 
 namespace sherd {
@@ -23,90 +20,7 @@ NodeType exportCrackSurfaceNode();
 
 namespace {
 
-namespace fs = std::filesystem;
-using Params = ExportCrackSurfaceParams;
-
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-void spill(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
-
-/// What a run says to the user.
-struct Listener {
-  std::vector<std::string> infos, warnings;
-  Exec exec;
-  Listener() {
-    exec.onMessage = [this](LogLevel level, const std::string& line) {
-      (level == LogLevel::Info ? infos : warnings).push_back(line);
-    };
-  }
-};
-
-using Coordinates = std::array<double, 3>;
-
-/// What the tests look at of an OBJ file.
-struct Obj {
-  std::vector<Coordinates> positions;
-  std::vector<std::array<std::size_t, 3>> faces;
-  std::vector<std::string> groups, materials;
-  std::size_t normals = 0, uvs = 0;
-};
-
-Obj readObj(const fs::path& path) {
-  Obj obj;
-  std::ifstream in(path);
-  for (std::string line, key; std::getline(in, line);) {
-    std::istringstream words(line);
-    words >> key;
-    if (key == "v") {
-      Coordinates p{};
-      words >> p[0] >> p[1] >> p[2];
-      obj.positions.push_back(p);
-    } else if (key == "f") {
-      std::array<std::size_t, 3> face{};
-      for (auto& corner : face) {
-        std::string word;
-        words >> word;
-        corner = std::stoul(word) - 1;
-      }
-      obj.faces.push_back(face);
-    } else if (key == "g" || key == "usemtl") {
-      std::string name;
-      words >> name;
-      (key == "g" ? obj.groups : obj.materials).push_back(name);
-    }
-    obj.normals += key == "vn";
-    obj.uvs += key == "vt";
-  }
-  return obj;
-}
-
-std::set<std::string> namesIn(const fs::path& directory) {
-  std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(directory)) names.insert(entry.path().filename().string());
-  return names;
-}
-
-class Export : public testing::Test {
- protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    root = fs::temp_directory_path() / ("sherd_export_" + std::to_string(::getpid()) + "_" + info->name());
-    fs::remove_all(root);
-    fs::create_directories(root);
-    params.directory = (root / "out").string();
-  }
-  void TearDown() override { fs::remove_all(root); }
-
-  fs::path out(const std::string& name) const { return fs::path(params.directory) / name; }
-  Result<ExportReport> run(const Fragments& f) { return exportCrackSurface(f, params, listener.exec); }
-
-  fs::path root;
-  Params params;
-  Listener listener;
-};
+using namespace export_test;
 
 TEST_F(Export, RefusesNoPieces) {
   const auto result = run(Fragments{});
@@ -341,184 +255,6 @@ TEST_F(Export, DescriptionAddsUp) {
   EXPECT_EQ(json["pieces"][1]["neighbours"].size(), 2u);
   EXPECT_NEAR(json["pieces"][1]["inertia"][0][0].get<double>(), 2400.0 / 6, 1e-9);
   EXPECT_NEAR(json["pieces"][1]["centre_of_mass"][0].get<double>(), 1.6, 1e-12);
-}
-
-TEST_F(Export, TwelveAfterSixtySevenLeavesTwelveAndForeignFilesAlone) {
-  ASSERT_TRUE(run(test::slicedBox(67)).ok());
-  spill(out("notes.txt"), "mine");
-  spill(out("piece_0070_surface.obj"), "mine too");
-  const auto result = run(test::slicedBox(12));
-  ASSERT_TRUE(result.ok());
-  EXPECT_EQ(result->removed, 2u * 55);
-  EXPECT_EQ(namesIn(params.directory).size(), 2u * 12 + 2 + 2);
-  EXPECT_EQ(slurp(out("notes.txt")), "mine");
-  EXPECT_EQ(slurp(out("piece_0070_surface.obj")), "mine too");
-}
-
-TEST_F(Export, SecondRunTouchesNothingAndMendsWhatWasChanged) {
-  const Fragments f = test::slicedBox(3);
-  const auto first = run(f);
-  ASSERT_TRUE(first.ok());
-  EXPECT_EQ(first->written, 7u);
-  EXPECT_EQ(first->files.size(), 8u);
-  const std::string whole = slurp(out("piece_0002_crack.obj"));
-  const auto time = fs::last_write_time(out("sherd_manifest.json"));
-  const auto second = run(f);
-  ASSERT_TRUE(second.ok());
-  EXPECT_EQ(second->written, 0u);
-  EXPECT_EQ(second->kept, 7u);
-  EXPECT_EQ(fs::last_write_time(out("sherd_manifest.json")), time);
-  spill(out("piece_0002_crack.obj"), whole.substr(0, whole.size() - 1) + "x");
-  fs::remove(out("piece_0001_surface.obj"));
-  const auto third = run(f);
-  ASSERT_TRUE(third.ok());
-  EXPECT_EQ(third->written, 3u);  // the two, and the description that was withdrawn before them
-  EXPECT_EQ(slurp(out("piece_0002_crack.obj")), whole);
-}
-
-TEST_F(Export, ALonelyCrackTriangleIsAnErrorBeforeAnythingIsWritten) {
-  Fragments f = test::slicedBox(2);
-  std::swap(f.pieces[0].crack[0][0], f.pieces[0].crack[0][1]);
-  const auto result = run(f);
-  ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().port, "pieces");
-  EXPECT_FALSE(fs::exists(params.directory));
-}
-
-TEST_F(Export, RefusesForeignFileUnderOurNameBeforeWriting) {
-  fs::create_directories(params.directory);
-  spill(out("piece_0002_crack.obj"), "a stranger's");
-  const auto result = run(test::slicedBox(2));
-  ASSERT_FALSE(result.ok());
-  EXPECT_NE(result.error().what.find("piece_0002_crack.obj"), std::string::npos);
-  EXPECT_EQ(result.error().port, "directory");
-  EXPECT_EQ(namesIn(params.directory), std::set<std::string>{"piece_0002_crack.obj"});
-}
-
-TEST_F(Export, KilledRunIsCleanedUp) {
-  ASSERT_TRUE(run(test::slicedBox(5)).ok());
-  // A run of more pieces that was killed while it wrote piece 6: claimed, partly there.
-  auto manifest = nlohmann::json::parse(slurp(out("sherd_manifest.json")));
-  manifest["files"]["piece_0006_surface.obj"] = "";
-  manifest["files"]["piece_0007_surface.obj"] = "";
-  spill(out("sherd_manifest.json"), manifest.dump());
-  spill(out("piece_0006_surface.obj"), "v 0 0 0");
-  spill(out("piece_0007_surface.obj.0123456789abcdef.partial"), "v 0");
-  ASSERT_TRUE(run(test::slicedBox(2)).ok());
-  EXPECT_EQ(namesIn(params.directory).size(), 2u * 2 + 2);
-}
-
-TEST_F(Export, HostileManifestRemovesNothingOfOthers) {
-  fs::create_directories(params.directory);
-  spill(root / "precious.txt", "precious");
-  spill(root / "piece_0009_surface.obj", "precious");
-  spill(out("scene.blend"), "precious");
-  spill(
-      out("sherd_manifest.json"),
-      R"({"files": {"../precious.txt": "", "../piece_0009_surface.obj": "", "scene.blend": "", "..": "", "": 3}})");
-  ASSERT_TRUE(run(test::slicedBox(2)).ok());
-  EXPECT_EQ(slurp(root / "precious.txt"), "precious");
-  EXPECT_EQ(slurp(root / "piece_0009_surface.obj"), "precious");
-  EXPECT_EQ(slurp(out("scene.blend")), "precious");
-}
-
-TEST_F(Export, DamagedManifestIsAnError) {
-  fs::create_directories(params.directory);
-  for (const char* text : {"", "{", "[]", "{\"files\": 3}", "\xff\xfe"}) {
-    spill(out("sherd_manifest.json"), text);
-    const auto result = run(test::slicedBox(2));
-    ASSERT_FALSE(result.ok());
-    EXPECT_NE(result.error().what.find("sherd_manifest.json"), std::string::npos);
-  }
-}
-
-TEST_F(Export, DirectoryThatCannotBe) {
-  spill(root / "file", "");
-  params.directory = (root / "file").string();
-  auto result = run(test::slicedBox(2));
-  ASSERT_FALSE(result.ok());
-  EXPECT_NE(result.error().what.find("is a file, not a directory"), std::string::npos);
-  EXPECT_EQ(result.error().port, "directory");
-  params.directory = (root / "file" / "below").string();
-  result = run(test::slicedBox(2));
-  ASSERT_FALSE(result.ok());
-  EXPECT_NE(result.error().what.find("cannot create the directory"), std::string::npos);
-  EXPECT_EQ(result.error().port, "directory");
-  params.directory = "/proc/sherd";
-  EXPECT_FALSE(run(test::slicedBox(2)).ok());
-}
-
-TEST_F(Export, FailedWriteLeavesNoStrayFile) {
-  // No file may grow beyond the limit: what a full disk does, without one. The manifest of the names still
-  // fits.
-  rlimit before{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-  auto* handler = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit tight{700, before.rlim_max};
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &tight), 0);
-  const auto result = run(test::slicedBox(2));
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
-  ASSERT_FALSE(result.ok());
-  EXPECT_NE(result.error().what.find("cannot write '" + params.directory), std::string::npos)
-      << result.error().what;
-  EXPECT_EQ(result.error().port, "directory");
-  EXPECT_FALSE(result.error().remedy.empty());
-  for (const std::string& name : namesIn(params.directory))
-    EXPECT_EQ(name.find(".partial"), std::string::npos);
-  EXPECT_TRUE(run(test::slicedBox(2)).ok());
-}
-
-TEST_F(Export, CancelledRunLeavesNoPieces) {
-  CancelToken token;
-  token.cancel();
-  listener.exec.cancel = &token;
-  const auto result = run(test::slicedBox(2));
-  ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().kind, Error::Kind::Cancelled);
-  EXPECT_FALSE(fs::exists(params.directory));
-}
-
-/// New pieces never stand beside the description of old ones.
-TEST_F(Export, CancelledMidwayLeavesNoDescription) {
-  ASSERT_TRUE(run(test::slicedBox(3)).ok());
-  CancelToken token;
-  listener.exec.cancel = &token;
-  listener.exec.onProgress = [&](double share) {
-    if (share >= 0.5) token.cancel();  // beyond the three old pieces' names
-  };
-  auto result = run(test::slicedBox(9));
-  ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().kind, Error::Kind::Cancelled);
-  EXPECT_EQ(result.error().port, "");
-  EXPECT_FALSE(fs::exists(out("pieces.json")));
-  EXPECT_TRUE(fs::exists(out("piece_0001_surface.obj")));
-  listener.exec.cancel = nullptr;
-  ASSERT_TRUE(run(test::slicedBox(9)).ok());
-  EXPECT_EQ(nlohmann::json::parse(slurp(out("pieces.json")))["piece_count"], 9);
-}
-
-TEST_F(Export, FailedMidwayLeavesNoDescription) {
-  ASSERT_TRUE(run(test::slicedBox(3)).ok());
-  fs::remove(out("piece_0002_surface.obj"));
-  fs::create_directories(out("piece_0002_surface.obj") / "in the way");
-  const auto result = run(test::slicedBox(4));
-  ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().port, "directory");
-  EXPECT_FALSE(result.error().remedy.empty());
-  EXPECT_FALSE(fs::exists(out("pieces.json")));
-  fs::remove_all(out("piece_0002_surface.obj"));
-  ASSERT_TRUE(run(test::slicedBox(4)).ok());
-  EXPECT_EQ(nlohmann::json::parse(slurp(out("pieces.json")))["piece_count"], 4);
-}
-
-TEST_F(Export, CancelledWhereNothingChangesKeepsTheDescription) {
-  ASSERT_TRUE(run(test::slicedBox(3)).ok());
-  CancelToken token;
-  listener.exec.cancel = &token;
-  listener.exec.onProgress = [&](double) { token.cancel(); };
-  ASSERT_FALSE(run(test::slicedBox(3)).ok());
-  EXPECT_TRUE(fs::exists(out("pieces.json")));
 }
 
 TEST_F(Export, WarnsOfWhatObjCannotHold) {
