@@ -225,13 +225,13 @@ TEST_F(Evaluator, AFailureStopsRunningNodes) {
   std::atomic<bool> waiting{false}, sawCancel{false};
   add(custom("Waits", [&](NodeIo& io) -> Result<void> {
     waiting = true;
-    for (int i = 0; i < 5000 && !io.exec().cancelled(); ++i)
+    for (int i = 0; i < 60'000 && !io.exec().cancelled(); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     sawCancel = io.exec().cancelled();
     return cancelledError();
   }));
   add(custom("Fails", [&](NodeIo&) -> Result<void> {
-    for (int i = 0; i < 5000 && !waiting; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    for (int i = 0; i < 60'000 && !waiting; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return failure("it broke");
   }));
   const Graph graph = graphOf(R"("w": {"type": "Waits@1"}, "f": {"type": "Fails@1"})", registry);

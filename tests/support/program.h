@@ -58,12 +58,13 @@ inline std::string contentOf(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Every regular file below a directory, by relative name.
+/// Every regular file below a directory, by relative name; programs may write there meanwhile, so that a
+/// name may be gone before it is looked at: names are compared as they are spelled, not on the disk.
 inline std::map<std::string, std::string> filesBelow(const std::string& directory) {
   std::map<std::string, std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(directory))
     if (entry.is_regular_file())
-      files[std::filesystem::relative(entry.path(), directory).string()] = contentOf(entry.path());
+      files[entry.path().lexically_relative(directory).string()] = contentOf(entry.path());
   return files;
 }
 
