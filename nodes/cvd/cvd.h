@@ -75,6 +75,8 @@ Result<void> checkSites(const Embedding& embedding, const Sites& sites, const ch
 /// Σ V x̄ / Σ V, m; the mean of the nodes where all volumes are zero.
 Eigen::VectorXd bodyCentroid(const Embedding& embedding, const WeightField& weights);
 
+struct LloydState;
+
 /// Sites, and every node's nearest of them, kept exact while sites are added and moved.
 ///
 /// Same labels, sites and energies to the last bit as comparing all nodes with all sites in every pass: what
@@ -113,8 +115,7 @@ class Lloyd {
   double energy() const;                                ///< J·m²: E_D
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<LloydState> state_;
 };
 
 enum class Growth {

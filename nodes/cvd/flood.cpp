@@ -10,7 +10,7 @@ namespace {
 
 class Flood {
  public:
-  Flood(const PaddedPoints& points, const NodeGraph& graph)
+  Flood(const FloodPoints& points, const NodeGraph& graph)
       : points_(points),
         graph_(graph),
         label_(points.nodeCount, -1),
@@ -28,7 +28,8 @@ class Flood {
 
  private:
   double distance(std::size_t n, std::size_t j) const {
-    return squaredDistance(points_.nodes + n * points_.size, points_.sites + j * points_.size, points_.size);
+    const std::size_t d = points_.dimensions;
+    return squaredDistance(points_.nodes + n * d, points_.sites + j * d, d);
   }
 
   Index nearestNode(std::size_t j) const {
@@ -48,7 +49,7 @@ class Flood {
     queue_.push_back(n);
   }
 
-  const PaddedPoints& points_;
+  const FloodPoints& points_;
   const NodeGraph& graph_;
   std::vector<Index> label_;
   std::vector<double> distance_;
@@ -57,7 +58,7 @@ class Flood {
 
 }  // namespace
 
-std::vector<Index> floodLabels(const PaddedPoints& points, const NodeGraph& graph) {
+std::vector<Index> floodLabels(const FloodPoints& points, const NodeGraph& graph) {
   return Flood(points, graph).run();
 }
 

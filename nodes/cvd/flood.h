@@ -8,15 +8,15 @@
 
 namespace sherd {
 
-/// Padded coordinates of nodes and sites, one after another (cvd/distance.h).
-struct PaddedPoints {
+/// Coordinates of nodes and sites, one after another, `dimensions` each.
+struct FloodPoints {
   const double* nodes;
   const double* sites;
-  std::size_t nodeCount, siteCount, size;
+  std::size_t nodeCount, siteCount, dimensions;
 };
 
 /// Per node its label, or −1 where no flood arrived. First in, first out, sites in order, neighbours
 /// ascending; a node takes another label only for a smaller distance, or an equal one and a lower site.
-std::vector<Index> floodLabels(const PaddedPoints& points, const NodeGraph& graph);
+std::vector<Index> floodLabels(const FloodPoints& points, const NodeGraph& graph);
 
 }  // namespace sherd

@@ -39,15 +39,23 @@ struct PlainLloyd {
     double farthest = 0;
     for (Eigen::Index j = 0; j < sites.cols(); ++j)
       for (const auto* by : {&weights.weight, &weights.volume}) {
+        // The documented order: blocks of sixteen nodes, and within them node by node.
         double total = 0;
-        for (std::size_t n = 0; n < label.size(); ++n)
-          if (label[n] == j) total += (*by)[n];
-        if (!(total > 0)) continue;
         Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.rows());
-        for (std::size_t n = 0; n < label.size(); ++n)
-          if (label[n] == j)
+        for (std::size_t first = 0; first < label.size(); first += 16) {
+          double blockTotal = 0;
+          Eigen::VectorXd blockSum = Eigen::VectorXd::Zero(x.rows());
+          for (std::size_t n = first; n < std::min(first + 16, label.size()); ++n) {
+            if (label[n] != j) continue;
+            blockTotal += (*by)[n];
             for (Eigen::Index i = 0; i < x.rows(); ++i)
-              sum[i] += (*by)[n] / total * x(i, static_cast<Eigen::Index>(n));
+              blockSum[i] += (*by)[n] * x(i, static_cast<Eigen::Index>(n));
+          }
+          total += blockTotal;
+          sum += blockSum;
+        }
+        if (!(total > 0)) continue;
+        sum /= total;
         farthest = std::max(farthest, std::sqrt(squaredDistance(sum, sites.col(j))));
         sites.col(j) = sum;
         break;

@@ -133,8 +133,8 @@ TEST(Cvd, SameBitsAsThePlainReferenceForAnyThreadCount) {
   struct Case {
     int nodes, dimensions, sites;
   };
-  for (const Case& k :
-       {Case{1, 1, 1}, Case{40, 1, 7}, Case{1500, 3, 40}, Case{1300, 74, 30}, Case{700, 17, 200}}) {
+  for (const Case& k : {Case{1, 1, 1}, Case{40, 1, 7}, Case{1500, 3, 40}, Case{1300, 74, 30},
+                        Case{700, 17, 200}, Case{3000, 2, 120}, Case{2501, 5, 300}}) {
     const Cloud c = cloud(k.nodes, k.dimensions, static_cast<unsigned>(k.nodes));
     std::vector<int> nodes;
     for (int j = 0; j < k.sites; ++j) nodes.push_back((j * 7) % k.nodes);
