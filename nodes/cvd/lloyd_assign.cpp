@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "base/parallel.h"
@@ -11,6 +12,8 @@
 
 namespace sherd {
 namespace {
+
+constexpr float kStill = 0;  ///< the drift of a site that a bound was just taken of
 
 /// From so many pairs of node and site on it pays to find out which cells are near one another.
 constexpr std::size_t kManyPairs = std::size_t{1} << 18;
@@ -101,9 +104,11 @@ class BlockLabels {
       for (std::size_t k = 0; k < cellCount_; ++k) compareCell(cells_[k]);
     else
       compareAll();
-    for (std::size_t lane = 0; lane < laneCount_; ++lane)
+    for (; changed_ != 0; changed_ &= changed_ - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(changed_));
       if (s_.label[first_ + lane] != before_[lane])
         leaving_.push_back({static_cast<Index>(first_ + lane), before_[lane]});
+    }
   }
 
  private:
@@ -117,28 +122,22 @@ class BlockLabels {
     first_ = at(block) * kNodeLanes;
     laneCount_ = std::min(kNodeLanes, s_.nodes - first_);
     valid_ = (1u << laneCount_) - 1u;
-    loose_ = 0;
+    changed_ = 0;
     std::copy_n(&s_.label[first_], laneCount_, before_);
     std::copy_n(&s_.up[first_], kNodeLanes, reach_);
-    for (std::size_t lane = 0; lane < laneCount_; ++lane)
-      loose_ |= static_cast<unsigned>(!s_.isTight[first_ + lane]) << lane;
-    listCells();
+    loose_ = areTight(&s_.isTight[first_]) ? 0 : valid_;
+    cellCount_ = 0;
+    for (unsigned rest = valid_; rest != 0; ++cellCount_) {
+      const Index label = before_[std::countr_zero(rest)];
+      cells_[cellCount_] = {at(label), lanesWithLabel(before_, label) & valid_};
+      rest &= ~cells_[cellCount_].lanes;
+    }
   }
 
-  /// The cells that the block's nodes are in. Most blocks lie in one.
-  void listCells() {
-    bool isOne = true;
-    for (std::size_t lane = 0; lane < laneCount_; ++lane) isOne &= before_[lane] == before_[0];
-    cells_[0] = {at(before_[0]), valid_};
-    cellCount_ = 1;
-    if (isOne) return;
-    cellCount_ = 0;
-    for (std::size_t lane = 0; lane < laneCount_; ++lane) {
-      std::size_t k = 0;
-      while (k < cellCount_ && cells_[k].site != at(before_[lane])) ++k;
-      if (k == cellCount_) cells_[cellCount_++] = {at(before_[lane]), 0};
-      cells_[k].lanes |= 1u << lane;
-    }
+  static bool areTight(const char* lanes) {
+    char all[kNodeLanes];
+    std::memset(all, 1, kNodeLanes);
+    return std::memcmp(lanes, all, kNodeLanes) == 0;
   }
 
   /// The farthest that a node which was a cell's when the block's visit began may be from the cell's site.
@@ -225,7 +224,7 @@ class BlockLabels {
   void tighten() {
     loose_ = 0;
     for (std::size_t k = 0; k < cellCount_; ++k) compare(cells_[k].site, lows_[k], highs_[k]);
-    if (cellCount_ == 1 && std::equal(before_, before_ + laneCount_, &s_.label[first_])) {
+    if (cellCount_ == 1 && changed_ == 0) {
       std::copy_n(lows_[0].lane, laneCount_, &s_.low[first_]);
       std::copy_n(highs_[0].lane, laneCount_, &s_.up[first_]);
       std::copy_n(highs_[0].lane, laneCount_, reach_);
@@ -236,14 +235,12 @@ class BlockLabels {
       for (unsigned rest = cells_[k].lanes; rest != 0; rest &= rest - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
         reach_[lane] = highs_[k].lane[lane];
-        if (s_.label[first_ + lane] == before_[lane])
-          setBounds(lane, lows_[k].lane[lane], highs_[k].lane[lane]);
+        if ((changed_ >> lane & 1) == 0) setBounds(lane, lows_[k].lane[lane], highs_[k].lane[lane]);
       }
-    for (std::size_t k = 0; k < cellCount_ && cellCount_ > 1; ++k) {
-      unsigned open = 0;
-      for (std::size_t lane = 0; lane < laneCount_; ++lane)
-        open |= static_cast<unsigned>(!(lows_[k].lane[lane] > s_.up[first_ + lane])) << lane;
-      consider(cells_[k].site, open & ~cells_[k].lanes, lows_[k], highs_[k]);
+    for (std::size_t k = 0; k < cellCount_; ++k) {
+      std::uint16_t open;
+      findOpenLanes(&lows_[k], &kStill, 1, &s_.up[first_], &open);
+      consider(cells_[k].site, open & valid_ & ~cells_[k].lanes, lows_[k], highs_[k]);
     }
   }
 
@@ -261,6 +258,7 @@ class BlockLabels {
       if (at(s_.label[n]) == j) continue;
       if (!(high.lane[lane] < s_.low[n]) && !isNearer(n, j)) continue;
       s_.label[n] = static_cast<Index>(j);
+      changed_ |= 1u << lane;
       setBounds(lane, low.lane[lane], high.lane[lane]);
     }
   }
@@ -279,9 +277,10 @@ class BlockLabels {
 
   Index block_ = -1;
   std::size_t first_ = 0, laneCount_ = 0, cellCount_ = 0;
-  unsigned valid_ = 0;  ///< lanes that are nodes
-  unsigned loose_ = 0;  ///< lanes whose own bounds aren't tight
-  Index before_[kNodeLanes];
+  unsigned valid_ = 0;    ///< lanes that are nodes
+  unsigned changed_ = 0;  ///< lanes that have had another label during the visit
+  unsigned loose_ = 0;    ///< lanes whose own bounds aren't tight
+  Index before_[kNodeLanes] = {};
   float reach_[kNodeLanes];  ///< no less than the distances from the sites of `before_`
   Cell cells_[kNodeLanes];
   LaneValues lows_[kNodeLanes], highs_[kNodeLanes];

@@ -115,4 +115,10 @@ SHERD_CLONES void findOpenLanes(const LaneValues* __restrict__ bound, const floa
   }
 }
 
+SHERD_CLONES unsigned lanesWithLabel(const int* labels, int label) {
+  unsigned bits = 0;
+  for (std::size_t k = 0; k < kNodeLanes; ++k) bits |= static_cast<unsigned>(labels[k] == label) << k;
+  return bits;
+}
+
 }  // namespace sherd

@@ -61,4 +61,7 @@ void keepBounds(const LaneValues& low, float drift, LaneValues& kept);
 void findOpenLanes(const LaneValues* bound, const float* drift, std::size_t count, const float* up,
                    std::uint16_t* open);
 
+/// The lanes, of sixteen, that have this label.
+unsigned lanesWithLabel(const int* labels, int label);
+
 }  // namespace sherd
