@@ -84,7 +84,7 @@ void LloydState::addSite(const Eigen::Ref<const Eigen::VectorXd>& at, const Exec
   const std::size_t j = siteCount++;
   p.resize(siteCount * dimensions);
   site.resize(siteCount * dimensions);
-  error.push_back(0);
+  squaredNorm.push_back(0);
   drift.push_back(0);
   radius.push_back(0);
   version.push_back(++versions);

@@ -213,8 +213,8 @@ class BlockLabels {
 
   /// Bounds of the block's distances from site j, kept as well.
   unsigned compare(std::size_t j, LaneValues& low, LaneValues& high) {
-    const unsigned open = compareLanes(s_.lanes.block(at(block_)), s_.lanesOf(j), s_.dimensions,
-                                       {s_.lanes.relativeError(), s_.error[j]}, &s_.up[first_], low, high);
+    const unsigned open =
+        compareLanes(s_.lanes.block(at(block_)), s_.lanesOf(j), s_.dimensions, &s_.up[first_], low, high);
     seen_[j] = block_;
     if (s_.bounded) keepBounds(low, s_.drift[j], s_.bound[at(block_) * s_.capacity + j]);
     return open & valid_;

@@ -121,7 +121,7 @@ bool LloydState::moveNodes(std::span<const std::vector<Leaving>> leaving) {
 /// Puts site j there; what depends on where it was is up to the caller.
 void LloydState::place(std::size_t j, const double* at) {
   std::copy_n(at, dimensions, &p[j * dimensions]);
-  error[j] = lanes.convert(at, &site[j * dimensions]);
+  squaredNorm[j] = lanes.convert(at, &site[j * dimensions]);
 }
 
 /// Moves site j by `step`, m: its nodes may be nearer or farther by so much.

@@ -50,10 +50,10 @@ struct LloydState {
   NodeLanes lanes;
 
   std::size_t siteCount = 0;
-  std::size_t pinned = 0;              ///< the first so many sites don't move
-  std::vector<double> p;               ///< sites' coordinates, one after another
-  std::vector<float> site;             ///< the same for `lanes`
-  std::vector<float> error;            ///< per site: LaneError::absolute
+  std::size_t pinned = 0;   ///< the first so many sites don't move
+  std::vector<double> p;    ///< sites' coordinates, one after another
+  std::vector<float> site;  ///< per site: LaneSite::minusTwice
+  std::vector<float> squaredNorm;
   std::vector<float> drift;            ///< per site: at least the sum of all its moves
   std::vector<std::uint64_t> version;  ///< per site: another number for each place of any site
   std::uint64_t versions = 0;
@@ -79,7 +79,7 @@ struct LloydState {
   LloydState(const Embedding& e, const WeightField& w);
 
   const double* position(std::size_t j) const { return p.data() + j * dimensions; }
-  const float* lanesOf(std::size_t j) const { return site.data() + j * dimensions; }
+  LaneSite lanesOf(std::size_t j) const { return {site.data() + j * dimensions, squaredNorm[j]}; }
   double squaredDistanceTo(std::size_t n, std::size_t j) const;
   /// Exactly the documented number; kept until the site moves or the label changes.
   double ownSquaredDistance(std::size_t n);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/clones.h"
+#include "base/parallel.h"
 
 namespace sherd {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 using Lanes __attribute__((vector_size(sizeof(LaneValues)), may_alias)) = float;
 
 constexpr double kUlp = 0x1p-24;      // of float, relative, when rounding to nearest
-constexpr double kUnderflow = 1e-17;  // √(d · 2⁻¹⁴⁹) and less for d ≤ 10⁷ dimensions
+constexpr float kUnderflow = 1e-36f;  // more than d · 2⁻¹⁴⁹ for d ≤ 10⁷ dimensions
 
 /// The mean of some of the points: near the middle, so that floats have bits to spare.
 std::vector<double> middleOf(const Eigen::MatrixXd& points) {
@@ -30,39 +31,38 @@ NodeLanes::NodeLanes(const Eigen::MatrixXd& coordinates, double scale)
     : dimensions_(static_cast<std::size_t>(coordinates.rows())),
       blocks_((static_cast<std::size_t>(coordinates.cols()) + kNodeLanes - 1) / kNodeLanes),
       inverseScale_(scale > 0 && std::isfinite(1 / scale) ? 1 / scale : 1),
-      // Differences, squares and their sum are off by dimensions + 3 roundings of the square at most.
-      relativeError_(static_cast<float>(static_cast<double>(dimensions_ + 8) * kUlp)),
       origin_(middleOf(coordinates)),
-      values_(std::make_unique_for_overwrite<LaneValues[]>(blocks_ * dimensions_)) {
-  const auto nodes = static_cast<std::size_t>(coordinates.cols());
-  double farthest2 = 0;
-  for (std::size_t b = 0; b < blocks_; ++b) {
-    const double* x[kNodeLanes];  // the last node stands in for those that a last block lacks
-    for (std::size_t k = 0; k < kNodeLanes; ++k)
-      x[k] = coordinates.data() + std::min(b * kNodeLanes + k, nodes - 1) * dimensions_;
-    double norm2[kNodeLanes] = {};
-    for (std::size_t i = 0; i < dimensions_; ++i) {
-      LaneValues& out = values_[b * dimensions_ + i];
-      for (std::size_t k = 0; k < kNodeLanes; ++k) {
-        const double y = (x[k][i] - origin_[i]) * inverseScale_;
-        norm2[k] += y * y;
-        out.lane[k] = static_cast<float>(y);
-      }
-    }
-    for (const double n2 : norm2) farthest2 = std::max(farthest2, n2);
-  }
-  radius_ = std::sqrt(farthest2);
+      values_(std::make_unique_for_overwrite<LaneValues[]>(blocks_ * (dimensions_ + 1))) {
+  const std::size_t grain = 1 + (std::size_t{1} << 11) / dimensions_;
+  parallelFor(Exec{}, blocks_, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) convertBlock(coordinates, b);
+  });
 }
 
-float NodeLanes::convert(const double* position, float* out) const {
+void NodeLanes::convertBlock(const Eigen::MatrixXd& coordinates, std::size_t b) {
+  const double* x[kNodeLanes];  // the last node stands in for those that a last block lacks
+  for (std::size_t k = 0; k < kNodeLanes; ++k)
+    x[k] = coordinates.data() +
+           std::min(b * kNodeLanes + k, static_cast<std::size_t>(coordinates.cols()) - 1) * dimensions_;
+  LaneValues* out = values_.get() + b * (dimensions_ + 1);
+  double norm2[kNodeLanes] = {};
+  for (std::size_t i = 0; i < dimensions_; ++i, ++out)
+    for (std::size_t k = 0; k < kNodeLanes; ++k) {
+      const double y = (x[k][i] - origin_[i]) * inverseScale_;
+      norm2[k] += y * y;
+      out->lane[k] = static_cast<float>(y);
+    }
+  for (std::size_t k = 0; k < kNodeLanes; ++k) out->lane[k] = static_cast<float>(norm2[k]);
+}
+
+float NodeLanes::convert(const double* position, float* minusTwice) const {
   double norm2 = 0;
   for (std::size_t i = 0; i < dimensions_; ++i) {
     const double y = (position[i] - origin_[i]) * inverseScale_;
     norm2 += y * y;
-    out[i] = static_cast<float>(y);
+    minusTwice[i] = -2 * static_cast<float>(y);
   }
-  // Twice what rounding both points to floats moves them by, for the arithmetic of the bounds themselves.
-  return static_cast<float>(4 * kUlp * (radius_ + std::sqrt(norm2)) + kUnderflow);
+  return static_cast<float>(norm2);
 }
 
 float NodeLanes::atLeast(double length) const {
@@ -73,28 +73,26 @@ float NodeLanes::atMost(double length) const {
   return static_cast<float>(length * inverseScale_ * (1 - 4 * kUlp));
 }
 
-SHERD_CLONES unsigned compareLanes(const LaneValues* block, const float* site, std::size_t dimensions,
-                                   const LaneError& error, const float* __restrict__ up,
-                                   LaneValues& __restrict__ low, LaneValues& __restrict__ high) {
+SHERD_CLONES unsigned compareLanes(const LaneValues* block, const LaneSite& site, std::size_t dimensions,
+                                   const float* __restrict__ up, LaneValues& __restrict__ low,
+                                   LaneValues& __restrict__ high) {
   const auto* x = reinterpret_cast<const Lanes*>(block);
+  const float* p = site.minusTwice;
   Lanes sums[4] = {};  // four, so that one addition needn't wait for another
   std::size_t i = 0;
   for (; i + 4 <= dimensions; i += 4) {
-    const Lanes a = x[i] - site[i], b = x[i + 1] - site[i + 1], c = x[i + 2] - site[i + 2],
-                d = x[i + 3] - site[i + 3];
-    sums[0] += a * a, sums[1] += b * b, sums[2] += c * c, sums[3] += d * d;
+    sums[0] += x[i] * p[i], sums[1] += x[i + 1] * p[i + 1];
+    sums[2] += x[i + 2] * p[i + 2], sums[3] += x[i + 3] * p[i + 3];
   }
-  for (; i < dimensions; ++i) {
-    const Lanes a = x[i] - site[i];
-    sums[0] += a * a;
-  }
-  const Lanes squares = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-  const float less = 1 - error.relative, more = 1 + error.relative, off = error.absolute;
+  for (; i < dimensions; ++i) sums[0] += x[i] * p[i];
+  const Lanes norms = x[dimensions] + site.squaredNorm;
+  const Lanes squares = ((sums[0] + sums[1]) + (sums[2] + sums[3])) + norms;
+  const Lanes error = norms * static_cast<float>(static_cast<double>(dimensions + 16) * kUlp) + kUnderflow;
   unsigned open = 0;
   for (std::size_t k = 0; k < kNodeLanes; ++k) {
-    const float distance = std::sqrt(squares[k]);
-    low.lane[k] = distance * less - off;
-    high.lane[k] = distance * more + off;
+    const float least = squares[k] - error[k], most = squares[k] + error[k];
+    low.lane[k] = std::sqrt(least > 0 ? least : 0) * (1 - 0x1p-22f);
+    high.lane[k] = std::sqrt(most) * (1 + 0x1p-22f);
     open |= static_cast<unsigned>(!(low.lane[k] > up[k])) << k;
   }
   return open;

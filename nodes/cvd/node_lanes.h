@@ -17,8 +17,15 @@ struct alignas(4 * kNodeLanes) LaneValues {
   float lane[kNodeLanes];
 };
 
+/// A site as blocks are compared with it: its components times −2, and the square of their norm.
+struct LaneSite {
+  const float* minusTwice;
+  float squaredNorm;
+};
+
 /// Coordinates relative to about their middle, over a scale, as floats: block b holds nodes 16 b to 16 b +
-/// 15, component by component. All distances below are over the scale.
+/// 15, component by component, and behind these the squares of their norms. All distances below are over the
+/// scale.
 class NodeLanes {
  public:
   /// d × n coordinates, finite, n ≥ 1; scale: about the size of the cloud (1 is taken where it isn't
@@ -26,33 +33,29 @@ class NodeLanes {
   NodeLanes(const Eigen::MatrixXd& coordinates, double scale);
 
   std::size_t blockCount() const { return blocks_; }
-  /// `dimensions` of them.
-  const LaneValues* block(std::size_t b) const { return values_.get() + b * dimensions_; }
-  /// Writes a site's components; returns how far a distance of it may be off beside relativeError().
-  float convert(const double* position, float* out) const;
-  /// A length over the scale, and no less.
+  /// `dimensions` + 1 of them.
+  const LaneValues* block(std::size_t b) const { return values_.get() + b * (dimensions_ + 1); }
+  /// Writes LaneSite::minusTwice, `dimensions` numbers; returns LaneSite::squaredNorm.
+  float convert(const double* position, float* minusTwice) const;
+  /// A length over the scale, and no less, or no more.
   float atLeast(double length) const;
   float atMost(double length) const;
-  float relativeError() const { return relativeError_; }
 
  private:
+  void convertBlock(const Eigen::MatrixXd& coordinates, std::size_t b);
+
   std::size_t dimensions_, blocks_;
-  double inverseScale_, radius_ = 0;  ///< radius_: of all nodes around the origin, over the scale
-  float relativeError_;
+  double inverseScale_;
   std::vector<double> origin_;
   std::unique_ptr<LaneValues[]> values_;
 };
 
-/// How far a distance between floats may be from that of the points that they stand for.
-struct LaneError {
-  float relative, absolute;
-};
-
-/// low ≤ ‖x_n − p‖ ≤ high for the nodes of a block (not below 0). Returns a bit for each lane of which
-/// low > up isn't known: that of a node which the site may be nearer to than `up`. Where numbers overflow,
-/// that is all of them. Same bits on all processors, as below.
-unsigned compareLanes(const LaneValues* block, const float* site, std::size_t dimensions,
-                      const LaneError& error, const float* up, LaneValues& low, LaneValues& high);
+/// low ≤ ‖x_n − p‖ ≤ high for the nodes of a block, from ‖x‖² + ‖p‖² − 2 x·p, whose error is at most
+/// (d + 16) 2⁻²⁴ (‖x‖² + ‖p‖²). Returns a bit for each lane of which low > up isn't known: that of a node
+/// which the site may be nearer to than `up`. Where numbers overflow, that is all of them. Same bits on all
+/// processors, as below.
+unsigned compareLanes(const LaneValues* block, const LaneSite& site, std::size_t dimensions, const float* up,
+                      LaneValues& low, LaneValues& high);
 
 /// kept: a little less than low + drift, so that rounding leaves kept − drift ≤ low.
 void keepBounds(const LaneValues& low, float drift, LaneValues& kept);
