@@ -15,6 +15,7 @@
 //   the graph of the mesh connects to a site's nearest node; nodes that no flood reaches take their nearest
 //   site.
 // - The paper's 1e-7 is relative to the embedding's diameter; unchanged labels also end the iteration.
+// - Sites move farther than to their centroids while many labels change (LloydLimits::relaxation).
 // - A diagram of one cell has its site at the body's centroid by volume, wherever the energy is.
 // - Sites are added one at a time, drawn with probability ∝ w ‖x̄ − p̄‖² (the paper: all at once, ∝ w), with a
 //   few passes of Lloyd's iteration after each. E_D can then not rise with their number, which a search for a
@@ -35,11 +36,17 @@ namespace sherd {
 
 enum class Labels { Exact, Flood };
 
-/// When Lloyd's iteration ends: no label changed, no site moved farther than tolerance · Embedding::diameter,
-/// or after so many passes.
+/// How far sites move in a pass, and when Lloyd's iteration ends: no label changed, no site moved farther
+/// than tolerance · Embedding::diameter, or after so many passes.
+///
+/// relaxation ω: sites move ω times as far as to their centroids until one label in a hundred or fewer
+/// changes in a pass; from then on just to them, so that all ends at centroids. For fixed labels a site's
+/// share of E_D is W ‖p − c‖² and a constant, and (1 − ω)² ≤ 1: for ω in (0, 2] E_D doesn't rise either.
+/// Measured (tests/bench): with 1.8 a fifth of the passes less, and E_D at the end 1.4 % lower, than with 1.
 struct LloydLimits {
   double tolerance = 1e-7;
   int maxIterations = 1000;
+  double relaxation = 1.8;
 };
 
 struct CvdParams {
@@ -80,11 +87,14 @@ struct LloydState;
 /// Sites, and every node's nearest of them, kept exact while sites are added and moved.
 ///
 /// Same labels, sites and energies to the last bit as comparing all nodes with all sites in every pass: what
-/// is left out is proved not to matter. A cell's nodes are compared only with sites within twice the cell's
-/// radius, and where their own site stayed only with sites that moved; and per (node, site) a lower bound of
-/// the distance, lessened by how far the site has moved since (Elkan, ICML 2003; widened by 1e-10 for
-/// rounding), rules out most of the others. Bounds take 4 bytes · nodes · N; beyond 256 MB they are not kept,
-/// which costs time only.
+/// is left out is proved not to matter. Nodes are compared in blocks of sixteen and in single precision, with
+/// a bound of its error; only where that leaves two sites possible are exact squares compared
+/// (cvd/distance.h). Where their own site stayed nodes are compared only with sites that moved; per (node,
+/// site) a lower bound of the distance, lessened by how far the site has moved since, rules out most of the
+/// others (Elkan, ICML 2003); and from 2¹⁸ pairs on a cell's nodes are compared only with sites within twice
+/// its radius. Centroids: Σ w x̄ and Σ w over the cell's nodes in each block of sixteen in ascending order,
+/// these sums added over the blocks, and divided. Bounds take 4 bytes · nodes · N; beyond 256 MB they are not
+/// kept, which costs time only.
 class Lloyd {
  public:
   /// Input that passes checkLloydInput; kept by reference.

@@ -32,7 +32,7 @@ NodeType cvdNode() {
       .output<Partition>("cells", "every node's nearest site")
       .output<std::int64_t>("degree", "number of sites")
       .output<double>("energy", "E_D, J·m²")
-      .implementation(3)
+      .implementation(4)
       .run([](const CvdParams& params, NodeIo& io) -> Result<void> {
         const auto sites = io.in<Sites>("sites");
         SHERD_ASSIGN(Partition cells, cvd(io.in<Embedding>("embedding"), *io.in<WeightField>("weights"),

@@ -11,19 +11,26 @@
 namespace sherd {
 namespace {
 
+constexpr std::size_t kCalm =
+    100;  ///< one node in so many changes its label: sites move no farther from then on
 constexpr std::size_t kMaxBounds = std::size_t{1} << 26;
 
-/// Ends when labels or sites no longer change, or after so many passes.
+/// Sites move farther than to their centroids until few labels change in a pass. After that it ends when no
+/// label changes or sites stay, or after so many passes.
 template <class Assign>
 Result<Lloyd::End> iterate(LloydState& state, const LloydLimits& limits, const Exec& exec,
                            const Assign& assignLabels) {
   Lloyd::End end;
+  double relaxation = limits.relaxation;
   while (!end.converged && end.iterations < limits.maxIterations) {
     if (exec.cancelled()) return cancelledError();  // labels may be incomplete from here on
-    const double step = state.moveToCentroids(exec);
-    const bool changed = assignLabels();
+    const double step = state.moveToCentroids(relaxation, exec);
+    const std::size_t changed = assignLabels();
     ++end.iterations;
-    end.converged = !changed || step <= limits.tolerance * state.embedding.diameter;
+    if (relaxation == 1)
+      end.converged = changed == 0 || step <= limits.tolerance * state.embedding.diameter;
+    else if (changed * kCalm <= state.nodes)
+      relaxation = 1;
   }
   if (exec.cancelled()) return cancelledError();
   return end;
@@ -104,7 +111,7 @@ void LloydState::listMembers() {
   for (std::size_t n = 0; n < nodes; ++n) members[at(label[n])].push_back(static_cast<Index>(n));
 }
 
-bool LloydState::assignByFlooding(const NodeGraph& graph, const Exec& exec) {
+std::size_t LloydState::assignByFlooding(const NodeGraph& graph, const Exec& exec) {
   const std::vector<Index> before = label;
   const std::vector<Index> flooded = floodLabels({x, p.data(), nodes, siteCount, dimensions}, graph);
   assign(exec);  // the nearest sites, for nodes that no flood has reached
@@ -115,13 +122,17 @@ bool LloydState::assignByFlooding(const NodeGraph& graph, const Exec& exec) {
     low[n] = 0;
     isTight[n] = 0;
   }
-  for (std::size_t n = 0; n < nodes; ++n)
-    if (label[n] != before[n]) dirty[at(label[n])] = dirty[at(before[n])] = 1;
+  std::size_t changed = 0;
+  for (std::size_t n = 0; n < nodes; ++n) {
+    if (label[n] == before[n]) continue;
+    dirty[at(label[n])] = dirty[at(before[n])] = 1;
+    ++changed;
+  }
   listMembers();
   std::fill(sums.begin(), sums.end(), CellSums{});
   std::fill(resized.begin(), resized.end(), 1);
   allStale = true;
-  return label != before;
+  return changed;
 }
 
 Lloyd::Lloyd(const Embedding& embedding, const WeightField& weights)

@@ -292,11 +292,11 @@ float LloydState::halfDistance(std::size_t c, std::size_t j) const {
   return lanes.atMost(std::sqrt(squaredDistance(position(c), position(j), dimensions)) / 2);
 }
 
-/// Makes labels exact. Returns whether one changed. Cost: where sites moved, and next to that.
-bool LloydState::assign(const Exec& exec) {
+/// Makes labels exact. Returns how many changed. Cost: where sites moved, and next to that.
+std::size_t LloydState::assign(const Exec& exec) {
   const Contenders contenders(*this, exec);
   const std::vector<Index> blocks = contenders.blocks();
-  const std::size_t grain = blockOf(dimensions * std::min<std::size_t>(siteCount, 32) * 4);
+  const std::size_t grain = evenBlockOf(blocks.size(), dimensions * std::min<std::size_t>(siteCount, 32) * 4);
   std::vector<std::vector<Leaving>> leaving((blocks.size() + grain - 1) / grain);
   parallelFor(exec, blocks.size(), grain, [&](std::size_t begin, std::size_t end) {
     BlockLabels labels(*this, contenders, leaving[begin / grain]);

@@ -86,22 +86,23 @@ void markStale(CellSums& sums, Index block) {
 
 }  // namespace
 
-/// Brings `members` up to the labels. Returns whether any has changed.
-bool LloydState::moveNodes(std::span<const std::vector<Leaving>> leaving) {
+/// Brings `members` up to the labels. Returns how many have changed.
+std::size_t LloydState::moveNodes(std::span<const std::vector<Leaving>> leaving) {
   std::vector<std::size_t> before(siteCount);
   std::vector<char> loses(siteCount, 0);
   for (std::size_t c = 0; c < siteCount; ++c) before[c] = members[c].size();
-  bool any = false;
-  for (const auto& list : leaving)
+  std::size_t count = 0;
+  for (const auto& list : leaving) {
+    count += list.size();
     for (const Leaving& leaver : list) {
       const std::size_t to = at(label[at(leaver.node)]);
       members[to].push_back(leaver.node);
       markStale(sums[to], blockOfNode(leaver.node));
       markStale(sums[at(leaver.from)], blockOfNode(leaver.node));
       loses[at(leaver.from)] = 1;
-      any = true;
     }
-  for (std::size_t c = 0; any && c < siteCount; ++c) {
+  }
+  for (std::size_t c = 0; count > 0 && c < siteCount; ++c) {
     std::vector<Index>& list = members[c];
     if (list.size() == before[c] && !loses[c]) continue;
     const auto middle = list.begin() + static_cast<std::ptrdiff_t>(before[c]);
@@ -115,7 +116,7 @@ bool LloydState::moveNodes(std::span<const std::vector<Leaving>> leaving) {
     }
     dirty[c] = resized[c] = 1;
   }
-  return any;
+  return count;
 }
 
 /// Puts site j there; what depends on where it was is up to the caller.
@@ -138,28 +139,32 @@ void LloydState::moveTo(std::size_t j, const double* at, double step) {
   }
 }
 
-/// Moves the sites of cells that changed, but not those pinned. Returns the farthest move, m.
-double LloydState::moveToCentroids(const Exec& exec) {
+/// Moves the sites of cells that changed, but not those pinned, to their centroids, or `relaxation` times as
+/// far. Returns the farthest move, m.
+double LloydState::moveToCentroids(double relaxation, const Exec& exec) {
   std::vector<double> step(siteCount, 0.0);
-  parallelFor(exec, siteCount, blockOf(nodes * dimensions / siteCount),
-              [&](std::size_t begin, std::size_t end) {
-                Summed byWeight(x, dimensions, weights.weight), byVolume(x, dimensions, weights.volume);
-                std::vector<double> target;
-                CellSums volumes;
-                for (std::size_t j = begin; j < end; ++j) {
-                  if (j < pinned || !dirty[j] || members[j].empty()) continue;
-                  byWeight.refresh(members[j], sums[j]);
-                  if (!byWeight.centroid(sums[j], target)) {
-                    volumes = {};
-                    byVolume.refresh(members[j], volumes);
-                    if (!byVolume.centroid(volumes, target)) continue;
-                  }
-                  if (std::equal(target.begin(), target.end() - 1, position(j))) continue;
-                  step[j] = std::sqrt(squaredDistance(target.data(), position(j), dimensions));
-                  moveTo(j, target.data(), step[j]);
-                }
-              });
-  std::fill(dirty.begin(), dirty.end(), 0);
+  const std::size_t grain = evenBlockOf(siteCount, nodes * dimensions / siteCount);
+  parallelFor(exec, siteCount, grain, [&](std::size_t begin, std::size_t end) {
+    Summed byWeight(x, dimensions, weights.weight), byVolume(x, dimensions, weights.volume);
+    std::vector<double> target;
+    CellSums volumes;
+    for (std::size_t j = begin; j < end; ++j) {
+      if (j < pinned || !dirty[j] || members[j].empty()) continue;
+      byWeight.refresh(members[j], sums[j]);
+      if (!byWeight.centroid(sums[j], target)) {
+        volumes = {};
+        byVolume.refresh(members[j], volumes);
+        if (!byVolume.centroid(volumes, target)) continue;
+      }
+      const double* from = position(j);
+      for (std::size_t i = 0; relaxation != 1 && i < dimensions; ++i)
+        target[i] = from[i] + relaxation * (target[i] - from[i]);
+      dirty[j] = relaxation != 1;
+      if (std::equal(target.begin(), target.end() - 1, from)) continue;
+      step[j] = std::sqrt(squaredDistance(target.data(), from, dimensions));
+      moveTo(j, target.data(), step[j]);
+    }
+  });
   for (std::size_t j = 0; j < siteCount; ++j)
     if (moved[j]) version[j] = ++versions;
   return step.empty() ? 0.0 : *std::max_element(step.begin(), step.end());

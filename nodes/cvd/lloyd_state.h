@@ -22,6 +22,12 @@ inline std::size_t blockOf(std::size_t operations) {
   return std::max<std::size_t>(1, kTaskWork / (operations + 1));
 }
 
+/// The same for that many items, in parts of one size, an even number of them where there are several.
+inline std::size_t evenBlockOf(std::size_t items, std::size_t operations) {
+  const std::size_t tasks = 1 + items * operations / kTaskWork, even = tasks == 1 ? 1 : (tasks + 1) / 2 * 2;
+  return std::max<std::size_t>(1, (items + even - 1) / even);
+}
+
 /// A site that may take nodes from a cell; a lower bound of half its distance to the cell's site.
 struct Contender {
   float half;
@@ -89,15 +95,15 @@ struct LloydState {
   void addSite(const Eigen::Ref<const Eigen::VectorXd>& at, const Exec& exec);
   void reserveBounds();
   void listMembers();
-  bool assignByFlooding(const NodeGraph& graph, const Exec& exec);
+  std::size_t assignByFlooding(const NodeGraph& graph, const Exec& exec);
 
   // lloyd_assign.cpp
-  bool assign(const Exec& exec);
+  std::size_t assign(const Exec& exec);
   float halfDistance(std::size_t c, std::size_t j) const;  ///< a lower bound, over the scale
 
   // lloyd_centroids.cpp
-  bool moveNodes(std::span<const std::vector<Leaving>> leaving);
-  double moveToCentroids(const Exec& exec);
+  std::size_t moveNodes(std::span<const std::vector<Leaving>> leaving);
+  double moveToCentroids(double relaxation, const Exec& exec);
   void place(std::size_t j, const double* at);
   void moveTo(std::size_t j, const double* at, double step);
 };

@@ -38,7 +38,7 @@ NodeType predictDegreeNode() {
       .output<std::int64_t>("degree", "number of sites N; 1: it does not break")
       .output<Sites>("sites", "the sites, with E_D and γ")
       .output<double>("energy", "E_D of these sites, J·m²")
-      .implementation(5)
+      .implementation(6)
       .run([](const PredictDegreeParams& params, NodeIo& io) -> Result<void> {
         const auto weights = io.in<WeightField>("weights");
         const auto embedding = io.in<Embedding>("embedding");

@@ -243,7 +243,7 @@ NodeType trainDegreeNode() {
       "Drops the body in many ways, or throws balls at it, searches into how many pieces it breaks "
       "each time, and learns to foretell that. What was computed is kept: more examples cost what is "
       "new, and a training that was ended goes on.");
-  node.implementation(3);
+  node.implementation(4);
   node.input<TetMesh>("body", "the body that is dropped or hit");
   node.input<Embedding>("embedding", "the distances to measure with, from Embed");
   node.optionalInput<ScalarGrid>("beta", "painted fragility β, as Weights is to have it");

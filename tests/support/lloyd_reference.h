@@ -35,7 +35,7 @@ struct PlainLloyd {
       }
     return label != before;
   }
-  double move() {
+  double move(double relaxation = 1) {
     double farthest = 0;
     for (Eigen::Index j = 0; j < sites.cols(); ++j)
       for (const auto* by : {&weights.weight, &weights.volume}) {
@@ -56,6 +56,7 @@ struct PlainLloyd {
         }
         if (!(total > 0)) continue;
         sum /= total;
+        if (relaxation != 1) sum = sites.col(j) + relaxation * (sum - sites.col(j));
         farthest = std::max(farthest, std::sqrt(squaredDistance(sum, sites.col(j))));
         sites.col(j) = sum;
         break;
@@ -64,11 +65,18 @@ struct PlainLloyd {
   }
   Lloyd::End run(const LloydLimits& limits, double diameter) {
     Lloyd::End end;
+    double relaxation = limits.relaxation;
     while (!end.converged && end.iterations < limits.maxIterations) {
-      const double step = move();
-      const bool changed = assign();
+      const std::vector<Index> before = label;
+      const double step = move(relaxation);
+      assign();
       ++end.iterations;
-      end.converged = !changed || step <= limits.tolerance * diameter;
+      std::size_t changed = 0;
+      for (std::size_t n = 0; n < label.size(); ++n) changed += label[n] != before[n];
+      if (relaxation == 1)
+        end.converged = changed == 0 || step <= limits.tolerance * diameter;
+      else if (100 * changed <= label.size())
+        relaxation = 1;
     }
     return end;
   }

@@ -27,7 +27,7 @@ Result<std::shared_ptr<const Embedding>> embeddingOf(const std::shared_ptr<const
 }
 
 /// Raised with the implementation of any node that the cells come from, so that what is kept is made anew.
-constexpr int kImplementation = 3;
+constexpr int kImplementation = 4;
 
 Result<PreparedCells> prepare(const std::shared_ptr<const TriMesh>& surface, const std::string& key,
                               const PrepareParams& params, FileStore& store) {
