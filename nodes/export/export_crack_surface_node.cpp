@@ -8,8 +8,12 @@ NodeType exportCrackSurfaceNode() {
   return NodeBuilder<Params>(
              "ExportCrackSurface", 1,
              "Writes every piece as two files, its outer skin and its crack faces, and pieces.json "
-             "with masses, volumes, inertia, neighbours and bonds. Files of an earlier run are replaced or "
-             "removed; nothing else in the directory is touched.")
+             "with masses, volumes, inertia, neighbours and bonds. Beside them sherd_manifest.json, a list "
+             "of what "
+             "was written: the next run replaces or removes what is on it, and nothing else in the directory "
+             "is "
+             "touched. Keep it with the files; without it the next run takes them for yours and refuses to "
+             "write over them.")
       .input<Fragments>("pieces", "the pieces to write")
       .outputDirectory("directory", &Params::directory, "where the files go; created where it is missing")
       .choice(

@@ -8,8 +8,11 @@ NodeType exportProxiesNode() {
   return NodeBuilder<Params>(
              "ExportProxies", 1,
              "Writes the pieces' convex hulls as OBJ, one object and group per hull, and proxies.json "
-             "with masses, inertia, volume errors and overlaps. Files of an earlier run are replaced "
-             "or removed; nothing else in the directory is touched.")
+             "with masses, inertia, volume errors and overlaps. Beside them sherd_proxies_manifest.json, a "
+             "list of "
+             "what was written: the next run replaces or removes what is on it, and nothing else in the "
+             "directory is touched. Keep it with the files; without it the next run takes them for yours and "
+             "refuses to write over them.")
       .input<Proxies>("proxies", "the hulls to write, from ConvexProxies")
       .outputDirectory("directory", &Params::directory, "where the files go; created where it is missing")
       .choice(

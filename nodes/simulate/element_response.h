@@ -25,7 +25,8 @@ class ElementResponse {
   struct Block {
     std::size_t width;
     const double* displacement;  ///< [element node][axis][load]
-    const double* dilatation;    ///< [mesh node][load], that the averaged part of λ acts on; may be null
+    const double* dilatation;    ///< [mesh node][load], that the averaged part of λ acts on; may be null,
+                                 ///< as it must be for quadratic elements
     double* force;               ///< as the displacement; added to
     double* energy;              ///< [tetrahedron][load]
   };

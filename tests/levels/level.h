@@ -3,6 +3,9 @@
 
 #include <cstddef>
 
+#include "simulate/element_response.h"
+#include "simulate/supernodal_solve.h"
+
 namespace sherd::test {
 
 /// squaredDistance and addScaled of cvd/distance.h; the others of learn_degree/sums.h, with matrices of
@@ -19,7 +22,18 @@ struct Level {
                       const int* order, std::size_t count, double* out);
 };
 
+/// Those of statics: y −= L x and x −= Lᵀ y with dense columns of L, `stride` apart, for one load or (`Wide`)
+/// kSolveWidth of them, and what is made of these.
+struct StaticsLevel {
+  using Subtract = void (*)(const double* l, std::size_t stride, std::size_t columns, std::size_t rows,
+                            const double* from, double* to);
+  Subtract down, downWide, downWidest, up, upWide, upWidest;  ///< with vectors of four and of eight loads
+  void (*solve)(const SupernodalFactor& factor, double* x, std::size_t width);
+  void (*respond)(const ElementResponse& response, const ElementResponse::Block& block);
+};
+
 }  // namespace sherd::test
 
-/// Of the shared object; its name there.
+/// Of the shared object; their names there.
 extern "C" sherd::test::Level sherdLevel();
+extern "C" sherd::test::StaticsLevel sherdStaticsLevel();

@@ -25,141 +25,62 @@
 
 namespace sherd::fields {
 
-template <class S, class T>
-concept Maybe = std::same_as<std::remove_const_t<S>, T>;
+template <class S, class... T>
+concept OneOf = (std::same_as<std::remove_const_t<S>, T> || ...);
 
-auto of(Maybe<FileFrame> auto& v) {
+/// All fields of a value, by their number.
+auto of(OneOf<FileFrame, TriMesh::UvSet, TriMesh::ColorSet, ImageFile, MtlStatement, SurfaceLooks, Digest,
+              RestShape, Proxies> auto& v) {
   auto& [a, b] = v;
   return std::tie(a, b);
 }
-auto of(Maybe<TriMesh::UvSet> auto& v) {
-  auto& [a, b] = v;
-  return std::tie(a, b);
-}
-auto of(Maybe<TriMesh::ColorSet> auto& v) {
-  auto& [a, b] = v;
-  return std::tie(a, b);
-}
-auto of(Maybe<TriMesh> auto& v) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k] = v;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
-}
-auto of(Maybe<ImageFile> auto& v) {
-  auto& [a, b] = v;
-  return std::tie(a, b);
-}
-auto of(Maybe<Texture> auto& v) {
-  auto& [a, b, c, d, e] = v;
-  return std::tie(a, b, c, d, e);
-}
-auto of(Maybe<MtlStatement> auto& v) {
-  auto& [a, b] = v;
-  return std::tie(a, b);
-}
-auto of(Maybe<Look> auto& v) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = v;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m);
-}
-auto of(Maybe<SurfaceLooks> auto& v) {
-  auto& [a, b] = v;
-  return std::tie(a, b);
-}
-auto of(Maybe<TetQuality> auto& v) {
-  auto& [a, b, c, d, e] = v;
-  return std::tie(a, b, c, d, e);
-}
-auto of(Maybe<TetMesh> auto& v) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l] = v;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l);
-}
-auto of(Maybe<SolidSums> auto& v) {
+auto of(OneOf<SolidSums, Material, ConvexHull> auto& v) {
   auto& [a, b, c] = v;
   return std::tie(a, b, c);
 }
-auto of(Maybe<TrianglePatches> auto& v) {
-  auto& [a, b, patchOf, d, e, f, g, h] = v;
-  return std::tie(a, b, d, e, f, g, h);  // patchOf says what a and b say
-}
-auto of(Maybe<Material> auto& v) {
-  auto& [a, b, c] = v;
-  return std::tie(a, b, c);
-}
-auto of(Maybe<Contact> auto& v) {
+auto of(OneOf<Contact, RigidMotion, Embedding> auto& v) {
   auto& [a, b, c, d] = v;
   return std::tie(a, b, c, d);
 }
-auto of(Maybe<RigidMotion> auto& v) {
-  auto& [a, b, c, d] = v;
-  return std::tie(a, b, c, d);
-}
-auto of(Maybe<Impact> auto& v) {
-  auto& [a, b, c, d, e, f] = v;
-  return std::tie(a, b, c, d, e, f);
-}
-auto of(Maybe<EnergyField> auto& v) {
+auto of(OneOf<Texture, TetQuality, EnergyField, DegreeErrors, Sites> auto& v) {
   auto& [a, b, c, d, e] = v;
   return std::tie(a, b, c, d, e);
 }
-auto of(Maybe<Digest> auto& v) {
-  auto& [a, b] = v;
-  return std::tie(a, b);
-}
-auto of(Maybe<WeightField> auto& v) {
+auto of(OneOf<Impact, WeightField, DegreeValidity> auto& v) {
   auto& [a, b, c, d, e, f] = v;
   return std::tie(a, b, c, d, e, f);
 }
-auto of(Maybe<DegreeValidity> auto& v) {
-  auto& [a, b, c, d, e, f] = v;
-  return std::tie(a, b, c, d, e, f);
-}
-auto of(Maybe<DegreeErrors> auto& v) {
-  auto& [a, b, c, d, e] = v;
-  return std::tie(a, b, c, d, e);
-}
-auto of(Maybe<DegreeModel> auto& v) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q] = v;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q);
-}
-auto of(Maybe<Embedding> auto& v) {
-  auto& [a, b, c, d] = v;
-  return std::tie(a, b, c, d);
-}
-auto of(Maybe<RestShape> auto& v) {
-  auto& [a, b] = v;
-  return std::tie(a, b);
-}
-auto of(Maybe<Sites> auto& v) {
-  auto& [a, b, c, d, e] = v;
-  return std::tie(a, b, c, d, e);
-}
-auto of(Maybe<Partition> auto& v) {
-  auto& [a, b, c, d, e, f, g, h, i] = v;
-  return std::tie(a, b, c, d, e, f, g, h, i);
-}
-auto of(Maybe<Piece> auto& v) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k] = v;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
-}
-auto of(Maybe<FractureCounts> auto& v) {
+auto of(OneOf<FractureCounts> auto& v) {
   auto& [a, b, c, d, e, f, g] = v;
   return std::tie(a, b, c, d, e, f, g);
 }
-auto of(Maybe<Fragments> auto& v) {
-  auto& [a, b, c, d, e, f, g, h, i, j] = v;
-  return std::tie(a, b, c, d, e, f, g, h, i, j);
-}
-
-auto of(Maybe<ConvexHull> auto& v) {
-  auto& [a, b, c] = v;
-  return std::tie(a, b, c);
-}
-auto of(Maybe<PieceProxy> auto& v) {
+auto of(OneOf<Partition, PieceProxy> auto& v) {
   auto& [a, b, c, d, e, f, g, h, i] = v;
   return std::tie(a, b, c, d, e, f, g, h, i);
 }
-auto of(Maybe<Proxies> auto& v) {
-  auto& [a, b] = v;
-  return std::tie(a, b);
+auto of(OneOf<Fragments> auto& v) {
+  auto& [a, b, c, d, e, f, g, h, i, j] = v;
+  return std::tie(a, b, c, d, e, f, g, h, i, j);
+}
+auto of(OneOf<TriMesh, Piece> auto& v) {
+  auto& [a, b, c, d, e, f, g, h, i, j, k] = v;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
+}
+auto of(OneOf<TetMesh> auto& v) {
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l] = v;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l);
+}
+auto of(OneOf<Look> auto& v) {
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = v;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m);
+}
+auto of(OneOf<DegreeModel> auto& v) {
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q] = v;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q);
+}
+auto of(OneOf<TrianglePatches> auto& v) {
+  auto& [a, b, patchOf, d, e, f, g, h] = v;
+  return std::tie(a, b, d, e, f, g, h);  // patchOf says what a and b say
 }
 
 template <class T>
