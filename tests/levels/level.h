@@ -2,17 +2,27 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
+#include "cvd/lane_bounds.h"
 #include "simulate/element_response.h"
 #include "simulate/supernodal_solve.h"
 
 namespace sherd::test {
 
-/// squaredDistance and addScaled of cvd/distance.h; the others of learn_degree/sums.h, with matrices of
-/// `rows` times `columns` column by column.
+/// squaredDistance, addScaled and sumScaled of cvd/distance.h and all of cvd/lane_bounds.h; the others of
+/// learn_degree/sums.h, with matrices of `rows` times `columns` column by column.
 struct Level {
   double (*squaredDistance)(const double* a, const double* b, std::size_t size);
   void (*addScaled)(double* sum, const double* a, double weight, std::size_t size);
+  void (*sumScaled)(double* out, const double* points, const double* weight, std::span<const int> list,
+                    std::size_t size);
+  unsigned (*compareLanes)(const LaneValues* block, const LaneSite& site, std::size_t dimensions,
+                           const float* up, LaneValues& low, LaneValues& high);
+  void (*keepBounds)(const LaneValues& low, float drift, LaneValues& kept);
+  void (*findOpenLanes)(const LaneValues* bound, const float* drift, std::size_t count, const float* up,
+                        std::uint16_t* open);
+  unsigned (*lanesWithLabel)(const int* labels, int label);
   void (*addProduct)(const double* m, std::size_t rows, std::size_t columns, const double* a, double* y);
   void (*squaredDistances)(const double* m, std::size_t rows, std::size_t columns, const double* z,
                            double* out);

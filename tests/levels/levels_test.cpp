@@ -21,6 +21,11 @@ test::Level theProgramsOwn() {
   test::Level own;
   own.squaredDistance = &squaredDistance;
   own.addScaled = &addScaled;
+  own.sumScaled = &sumScaled;
+  own.compareLanes = &compareLanes;
+  own.keepBounds = &keepBounds;
+  own.findOpenLanes = &findOpenLanes;
+  own.lanesWithLabel = &lanesWithLabel;
   own.addProduct = [](const double* m, std::size_t rows, std::size_t columns, const double* a, double* y) {
     addProduct({m, rows, columns}, a, y);
   };
@@ -72,12 +77,54 @@ void addSums(const test::Level& level, Numbers& numbers, std::size_t rows, std::
   record.add(running);
 }
 
+void addLanes(const test::Level& level, Numbers& numbers, std::size_t dimensions, Record& record) {
+  const auto nextLanes = [&] {
+    LaneValues values;
+    for (float& value : values.lane) value = static_cast<float>(numbers.next());
+    return values;
+  };
+  std::vector<LaneValues> block(dimensions + 1), bounds(5);
+  for (auto* list : {&block, &bounds})
+    for (LaneValues& values : *list) values = nextLanes();
+  std::vector<float> site(dimensions), drift(bounds.size());
+  for (auto* list : {&site, &drift})
+    for (float& value : *list) value = static_cast<float>(numbers.next());
+  const LaneValues up = nextLanes();
+  LaneValues low, high, kept;
+  record.add(level.compareLanes(block.data(), {site.data(), drift[0]}, dimensions, up.lane, low, high));
+  level.keepBounds(low, drift[1], kept);
+  std::vector<std::uint16_t> open(bounds.size());
+  level.findOpenLanes(bounds.data(), drift.data(), bounds.size(), up.lane, open.data());
+  for (const std::uint16_t bits : open) record.add(bits);
+  int labels[kNodeLanes];
+  for (std::size_t k = 0; k < kNodeLanes; ++k) {
+    for (const LaneValues* values : {&low, &high, &kept}) record.add(static_cast<double>(values->lane[k]));
+    labels[k] = low.lane[k] > 0.5f ? 7 : -1;
+  }
+  record.add(level.lanesWithLabel(labels, 7));
+}
+
+void addWeightedSums(const test::Level& level, Numbers& numbers, std::size_t dimensions, Record& record) {
+  const std::vector<double> points = numbers.next(20 * dimensions), weight = numbers.next(20);
+  const int list[] = {3, 0, 19, 7, 8};
+  std::vector<double> out(dimensions);
+  for (const std::size_t count : {0u, 1u, 5u}) {
+    level.sumScaled(out.data(), points.data(), weight.data(), {list, count}, dimensions);
+    record.add(out);
+  }
+}
+
 Record recordOf(const test::Level& level) {
   Record record;
   for (const auto kind : {Numbers::Kind::Ordinary, Numbers::Kind::AllSizes, Numbers::Kind::Nasty}) {
     Numbers numbers(kind, 5);
     for (int round = 0; round < 40; ++round) {
       for (std::size_t size = 8; size <= 256; size += 8) addDistances(level, numbers, size, record);
+      for (const std::size_t size : {1u, 3u, 4u, 8u, 13u, 33u, 74u, 250u}) {
+        addDistances(level, numbers, size, record);
+        addLanes(level, numbers, size, record);
+        addWeightedSums(level, numbers, size, record);
+      }
       for (const std::size_t rows : {1u, 3u, 4u, 8u, 13u, 74u})
         for (const std::size_t columns : {1u, 5u, 8u, 21u}) addSums(level, numbers, rows, columns, record);
     }
@@ -103,7 +150,7 @@ TEST_P(Levels, SumInTheOrderThatIsDocumented) {
   Record plain, built;
   Numbers numbers(Numbers::Kind::AllSizes, 11);
   for (int round = 0; round < 500; ++round) {
-    const std::size_t size = 8 * (1 + static_cast<std::size_t>(round) % 32);
+    const std::size_t size = 1 + static_cast<std::size_t>(round) % 250;
     const std::vector<double> a = numbers.next(size), b = numbers.next(size);
     volatile double s[8] = {};  // nothing is fused or put into another order
     for (std::size_t i = 0; i < size; ++i) {

@@ -7,6 +7,7 @@
 #undef SHERD_CLONES
 #define SHERD_CLONES
 #include "cvd/distance.cpp"
+#include "cvd/lane_bounds.cpp"
 #include "learn_degree/sums.cpp"
 
 using namespace sherd;
@@ -15,6 +16,11 @@ extern "C" __attribute__((visibility("default"))) test::Level sherdLevel() {
   test::Level level;
   level.squaredDistance = &squaredDistance;
   level.addScaled = &addScaled;
+  level.sumScaled = &sumScaled;
+  level.compareLanes = &compareLanes;
+  level.keepBounds = &keepBounds;
+  level.findOpenLanes = &findOpenLanes;
+  level.lanesWithLabel = &lanesWithLabel;
   level.addProduct = [](const double* m, std::size_t rows, std::size_t columns, const double* a, double* y) {
     addProduct({m, rows, columns}, a, y);
   };
