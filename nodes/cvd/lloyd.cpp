@@ -92,6 +92,7 @@ void LloydState::addSite(const Eigen::Ref<const Eigen::VectorXd>& at, const Exec
   p.resize(siteCount * dimensions);
   site.resize(siteCount * dimensions);
   squaredNorm.push_back(0);
+  if (j % kNodeLanes == 0) siteLanes.resize(siteLanes.size() + dimensions + 1, LaneValues{});
   drift.push_back(0);
   radius.push_back(0);
   version.push_back(++versions);

@@ -7,90 +7,13 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "cvd/distance.h"
+#include "cvd/contenders.h"
 #include "cvd/lloyd_state.h"
 
 namespace sherd {
 namespace {
 
 constexpr float kStill = 0;  ///< the drift of a site that a bound was just taken of
-
-/// From so many pairs of node and site on it pays to find out which cells are near one another.
-constexpr std::size_t kManyPairs = std::size_t{1} << 18;
-
-/// Which sites each cell's nodes have to be compared with.
-class Contenders {
- public:
-  Contenders(LloydState& s, const Exec& exec) : s_(s), isByCell_(s.nodes * s.siteCount >= kManyPairs) {
-    for (std::size_t j = 0; j < s.siteCount; ++j)
-      if (s.moved[j]) movers_.push_back(static_cast<Index>(j));
-    if (isByCell_) findByCell(exec);
-  }
-
-  /// Whether they are told cell by cell.
-  bool isByCell() const { return isByCell_; }
-  /// Nearest first.
-  std::span<const Contender> of(std::size_t cell) const { return byCell_[cell]; }
-  /// The sites that have moved since labels were exact, ascending.
-  std::span<const Index> movers() const { return movers_; }
-
-  /// Blocks that hold nodes of cells with contenders, ascending.
-  std::vector<Index> blocks() const {
-    std::vector<Index> list;
-    const bool everywhere =
-        !isByCell_ || std::none_of(byCell_.begin(), byCell_.end(), [](const auto& c) { return c.empty(); });
-    if (everywhere) {
-      if (s_.siteCount < 2 || (movers_.empty() && !s_.allStale)) return list;
-      for (std::size_t b = 0; b < s_.lanes.blockCount(); ++b) list.push_back(static_cast<Index>(b));
-      return list;
-    }
-    std::vector<char> isTouched(s_.lanes.blockCount(), 0);
-    for (std::size_t c = 0; c < byCell_.size(); ++c)
-      if (!byCell_[c].empty())
-        for (const Index n : s_.members[c]) isTouched[at(n) / kNodeLanes] = 1;
-    for (std::size_t b = 0; b < isTouched.size(); ++b)
-      if (isTouched[b]) list.push_back(static_cast<Index>(b));
-    return list;
-  }
-
- private:
-  /// Only those within twice the cell's radius: a site at twice a node's distance is farther from it than its
-  /// own, by the triangle inequality.
-  void findByCell(const Exec& exec) {
-    byCell_.resize(s_.siteCount);
-    parallelFor(exec, s_.siteCount, blockOf(s_.siteCount * s_.dimensions / 4),
-                [&](std::size_t begin, std::size_t end) {
-                  for (std::size_t c = begin; c < end; ++c) findOf(c);
-                });
-  }
-
-  void findOf(std::size_t c) {
-    if (s_.resized[c]) {
-      s_.radius[c] = -1;
-      for (const Index n : s_.members[c]) s_.radius[c] = std::max(s_.radius[c], s_.up[at(n)]);
-      s_.resized[c] = 0;
-    }
-    if (s_.radius[c] < 0) return;
-    const auto look = [&](std::size_t j) {
-      if (j == c) return;
-      const float half = s_.halfDistance(c, j);
-      if (!(half > s_.radius[c])) byCell_[c].push_back({half, static_cast<Index>(j)});
-    };
-    // Among sites that stayed, the comparison has been made before, with the same numbers.
-    if (s_.moved[c] || s_.allStale)
-      for (std::size_t j = 0; j < s_.siteCount; ++j) look(j);
-    else
-      for (const Index j : movers_) look(at(j));
-    std::sort(byCell_[c].begin(), byCell_[c].end(), [](const Contender& a, const Contender& b) {
-      return a.half != b.half ? a.half < b.half : a.site < b.site;
-    });
-  }
-
-  LloydState& s_;
-  bool isByCell_;
-  std::vector<Index> movers_;
-  std::vector<std::vector<Contender>> byCell_;
-};
 
 /// Labels of one block after another; what it writes is the block's own.
 class BlockLabels {
@@ -287,10 +210,6 @@ class BlockLabels {
 };
 
 }  // namespace
-
-float LloydState::halfDistance(std::size_t c, std::size_t j) const {
-  return lanes.atMost(std::sqrt(squaredDistance(position(c), position(j), dimensions)) / 2);
-}
 
 /// Makes labels exact. Returns how many changed. Cost: where sites moved, and next to that.
 std::size_t LloydState::assign(const Exec& exec) {

@@ -123,6 +123,10 @@ std::size_t LloydState::moveNodes(std::span<const std::vector<Leaving>> leaving)
 void LloydState::place(std::size_t j, const double* at) {
   std::copy_n(at, dimensions, &p[j * dimensions]);
   squaredNorm[j] = lanes.convert(at, &site[j * dimensions]);
+  LaneValues* block = &siteLanes[j / kNodeLanes * (dimensions + 1)];
+  const std::size_t lane = j % kNodeLanes;
+  for (std::size_t i = 0; i < dimensions; ++i) block[i].lane[lane] = site[j * dimensions + i] / -2;
+  block[dimensions].lane[lane] = squaredNorm[j];
 }
 
 /// Moves site j by `step`, m: its nodes may be nearer or farther by so much.

@@ -60,13 +60,15 @@ struct LloydState {
   std::vector<double> p;    ///< sites' coordinates, one after another
   std::vector<float> site;  ///< per site: LaneSite::minusTwice
   std::vector<float> squaredNorm;
+  std::vector<LaneValues> siteLanes;   ///< sites in blocks, as `lanes` has nodes
   std::vector<float> drift;            ///< per site: at least the sum of all its moves
   std::vector<std::uint64_t> version;  ///< per site: another number for each place of any site
   std::uint64_t versions = 0;
   std::vector<char> moved;    ///< per site: since labels were last exact
   std::vector<char> dirty;    ///< per cell: it has changed since its centroid was taken
   std::vector<char> resized;  ///< per cell: it or its nodes' bounds have changed since `radius` was taken
-  std::vector<float> radius;  ///< per cell: no less than the distance of any of its nodes
+  std::vector<std::vector<Contender>> contenders;  ///< per cell, while labels are made exact
+  std::vector<float> radius;                ///< per cell: no less than the distance of any of its nodes
   std::vector<std::vector<Index>> members;  ///< per cell its nodes, ascending
   std::vector<CellSums> sums;
 
@@ -99,7 +101,6 @@ struct LloydState {
 
   // lloyd_assign.cpp
   std::size_t assign(const Exec& exec);
-  float halfDistance(std::size_t c, std::size_t j) const;  ///< a lower bound, over the scale
 
   // lloyd_centroids.cpp
   std::size_t moveNodes(std::span<const std::vector<Leaving>> leaving);

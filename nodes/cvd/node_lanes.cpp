@@ -65,8 +65,4 @@ float NodeLanes::atLeast(double length) const {
   return static_cast<float>(length * inverseScale_ * (1 + 4 * kUlp));
 }
 
-float NodeLanes::atMost(double length) const {
-  return static_cast<float>(length * inverseScale_ * (1 - 4 * kUlp));
-}
-
 }  // namespace sherd

@@ -24,9 +24,8 @@ class NodeLanes {
   const LaneValues* block(std::size_t b) const { return values_.get() + b * (dimensions_ + 1); }
   /// Writes LaneSite::minusTwice, `dimensions` numbers; returns LaneSite::squaredNorm.
   float convert(const double* position, float* minusTwice) const;
-  /// A length over the scale, and no less, or no more.
+  /// A length over the scale, and no less.
   float atLeast(double length) const;
-  float atMost(double length) const;
 
  private:
   void convertBlock(const Eigen::MatrixXd& coordinates, std::size_t b);

@@ -7,7 +7,8 @@
 //          labels and flooding; sites grown one at a time (the default), drawn all at once like k-means++,
 //          drawn as in the paper (∝ w), and the best of 50 uniform draws
 // scaling  over nodes up to a million, and over sites up to 10,000
-// choices  E_D beside time of labels, starts and tolerances; precision: of float and double (cvd_choices.cpp,
+// choices  E_D beside time of labels, starts, tolerances and relaxations; precision: of float and double
+// (cvd_choices.cpp,
 //          cvd_precision.cpp)
 // Times are medians of 20 (5 beyond 100 ms). Writes CSV, JSON, SVG and Markdown into the directory
 // (default build/bench_cvd), and the tables into sections of FILE.md. Other arguments are Google Benchmark's.

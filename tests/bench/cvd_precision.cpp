@@ -170,11 +170,12 @@ void precisionOf(const std::string& name, const Body& body, int sites, Table& ta
   runPlain<double>(body, body, start, onePass, whole, inDouble);
   runPlain<double>(body, rounded, start, onePass, whole, coordinates);
   runPlain<float>(body, body, start, onePass, whole, inFloat);
-  const Outcome kept = iterated(drawnApart(body, sites, 1));
+  const LloydLimits unrelaxed{.relaxation = 1};  // as the others
+  const Outcome kept = iterated(drawnApart(body, sites, 1), Labels::Exact, unrelaxed);
   product = inDouble;
   product.atTheEnd = 100 * shareOfDifferent(kept.labels, whole.labels());
   product.passes = kept.iterations;
-  product.ms = leastMs([&] { iterated(drawnApart(body, sites, 1)); });
+  product.ms = leastMs([&] { iterated(drawnApart(body, sites, 1), Labels::Exact, unrelaxed); });
   const std::pair<const char*, const Measured*> rows[] = {{"double, with bounds (default)", &product},
                                                           {"double, plain", &inDouble},
                                                           {"coordinates in float, plain", &coordinates},
