@@ -12,9 +12,10 @@ SHERD_CLONES double squaredDistance(const double* a, const double* b, std::size_
       const double difference = a[i + lane] - b[i + lane];
       sum[lane] += difference * difference;
     }
-  for (std::size_t lane = 0; i + lane < size; ++lane) {
-    const double difference = a[i + lane] - b[i + lane];
-    sum[lane] += difference * difference;
+  if (i < size) {
+    double last[kLanes] = {};
+    for (std::size_t lane = 0; i + lane < size; ++lane) last[lane] = a[i + lane] - b[i + lane];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) sum[lane] += last[lane] * last[lane];
   }
   return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
 }

@@ -114,7 +114,7 @@ Result<bool> growSite(Lloyd& lloyd, const Embedding& embedding, const WeightFiel
   const auto node = drawSite(lloyd, embedding, weights, growth, seed);
   if (!node) return false;
   lloyd.addSite(embedding.coordinates.col(*node), exec);
-  SHERD_CHECK(lloyd.run({.maxIterations = kGrowthPasses, .relaxation = 1}, exec));
+  SHERD_CHECK(lloyd.run({.maxIterations = kGrowthPasses}, exec));
   return true;
 }
 

@@ -50,7 +50,9 @@ LloydState::LloydState(const Embedding& e, const WeightField& w)
       low(up.size(), 0.0f),
       isTight(up.size(), 0),
       distance2(nodes, std::numeric_limits<double>::infinity()),
-      measured(nodes, 0) {}
+      measured(nodes, 0) {
+  std::fill(isTight.begin() + static_cast<std::ptrdiff_t>(nodes), isTight.end(), 1);  // no nodes
+}
 
 double LloydState::squaredDistanceTo(std::size_t n, std::size_t j) const {
   return squaredDistance(x + n * dimensions, position(j), dimensions);

@@ -120,7 +120,7 @@ TEST(PredictDegree, SameBitsAsThePlainSearchForAnyThreadCount) {
       plain.sites.conservativeResize(Eigen::NoChange, plain.sites.cols() + 1);
       plain.sites.rightCols(1) = c.embedding->coordinates.col(drawn);
       plain.assign();
-      plain.run({.maxIterations = kGrowthPasses, .relaxation = 1}, c.embedding->diameter);
+      plain.run({.maxIterations = kGrowthPasses}, c.embedding->diameter);
     }
     plain.run({}, c.embedding->diameter);
     for (const int threads : {1, 2, 4}) {
