@@ -17,10 +17,6 @@ CellParts::CellParts(const TetMesh& tets, const Sheets& sheets, const Arrangemen
   firstSkin_ = uncut_.size();
   firstSheet_ = firstSkin_ + meshes.skin.parts();
   nameCells();
-  TaskGroup tasks;  // most of joining is one thread's work
-  tasks.run([&] { join(isCut); });
-  sumUp(isCut);
-  tasks.wait();
 }
 
 void CellParts::join(std::span<const unsigned char> isCut) {
