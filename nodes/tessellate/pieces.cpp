@@ -188,10 +188,16 @@ class Assembler {
     for (const Crossing& x : a_.surfaceCrossings.list) cutEdgeOf_[at(x.vertex - a_.firstCrack)] = x.edge;
     out_.cutCorners.resize(m_.skin.triangles.size());
     parallelFor(exec_, m_.skin.triangles.size(), 256, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::pair<Index, CornerWeights>> known;  // in the triangle's source
       for (std::size_t t = begin; t < end; ++t) {
         const SkinTriangle& skin = m_.skin.triangles[t];
-        for (std::size_t c = 0; c < 3; ++c)
-          out_.cutCorners[t][c] = weights(a_.surface[at(skin.source)], skin.corners[c]);
+        if (t == begin || skin.source != m_.skin.triangles[t - 1].source) known.clear();
+        for (std::size_t c = 0; c < 3; ++c) {
+          const Index v = skin.corners[c];
+          auto found = std::ranges::find(known, v, [](const auto& k) { return k.first; });
+          if (found == known.end()) found = known.insert(found, {v, weights(a_.surface[at(skin.source)], v)});
+          out_.cutCorners[t][c] = found->second;
+        }
       }
     });
   }
