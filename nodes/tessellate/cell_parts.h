@@ -88,7 +88,7 @@ class CellParts {
   void linkPatch(std::size_t patch, std::span<const unsigned char> isCut, PatchLinks& links) const;
   void addSkinBorders(std::vector<Side>& sides) const;
   void joinSheets(std::vector<Side>& sides);
-  void joinAround(std::span<const Index> sheetParts);
+  void joinAround(std::span<const Index> sheets, DisjointSets& bothSides);
   void joinSides(std::span<const Side> sides);
   void sumPatch(std::size_t patch, std::span<const unsigned char> isCut);
   void sumTriangles(std::size_t part);
