@@ -1,6 +1,7 @@
 #include "tessellate/envelope.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -16,7 +17,13 @@ constexpr std::size_t kBlock = 64;  ///< tetrahedra a task
 /// How much less extended precision is off than doubles are.
 constexpr double kExtended = 0x1p-11;
 
-std::uint64_t hashOf(const VertexName& name) { return hashOfIndices(name.ranks, hashOfIndices(name.nodes)); }
+std::uint64_t hashOf(const VertexName& name) {
+  const auto [a, b, c, d] = name.words();
+  const std::uint64_t nodes = (a * 0x9E3779B97F4A7C15ULL ^ b) * 0xC2B2AE3D27D4EB4FULL,
+                      ranks = (c * 0x9FB21C651E98DF25ULL ^ d) * 0xD6E8FEB86659FD93ULL;
+  const std::uint64_t both = nodes ^ std::rotl(ranks, 32);
+  return both ^ both >> 29;
+}
 
 template <class Number>
 Number determinant(const std::array<std::array<Number, 4>, 4>& m, std::size_t n) {
