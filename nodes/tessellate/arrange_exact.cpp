@@ -32,15 +32,19 @@ class Arranger {
     findSegments();
     if (exec_.cancelled()) return cancelledError();
     number();
+    TaskGroup placing;  // nothing of this needs places
+    placing.run([this] { placeVertices(); });
+    sortSegments();
     nameSurfaceEdges();
+    groupBySurface(a_);
+    groupByPolygon(sheets_.polygons.size(), a_);
+    placing.wait();
     if (exec_.cancelled()) return cancelledError();
     TaskGroup tasks;
     tasks.run([this] { a_.same = equalPositions(a_); });
     SHERD_CHECK(orderCrossings());
     SHERD_CHECK(checkLabels());
     SHERD_CHECK(classifySheets(tets_, sheets_, a_));
-    groupBySurface(a_);
-    groupByPolygon(sheets_.polygons.size(), a_);
     tasks.wait();
     return std::move(a_);
   }
@@ -104,11 +108,13 @@ class Arranger {
     a_.firstNew = a_.firstCrack + static_cast<Index>(sheets_.vertices.size());
     takeEnds(surfaceEnds, positions_.size(), a_.surfaceCrossings);
     takeEnds(sheetEnds, sheets_.edges.size(), a_.sheetCrossings);
-    placeVertices();
     indexByEdge(a_.surfaceCrossings, a_.cutEdges.size());
     indexByEdge(a_.sheetCrossings, sheets_.edges.size());
+  }
+
+  void sortSegments() {
     bucketSort(
-        segments, triangles_.size(), [](const Segment& s) { return s.surface; },
+        a_.segments, triangles_.size(), [](const Segment& s) { return s.surface; },
         [](const Segment& x, const Segment& y) {
           return std::tie(x.surface, x.polygon) < std::tie(y.surface, y.polygon);
         });
