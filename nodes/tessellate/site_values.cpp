@@ -72,8 +72,12 @@ SiteValues::SiteValues(const Partition& partition, const Exec& exec) : siteOf_(s
   for (std::size_t r = 0; r < siteOf_.size(); ++r)
     sites.col(static_cast<Eigen::Index>(r)) = partition.sites.col(siteOf_[r]) - mean;
   const Eigen::VectorXd squared = sites.colwise().squaredNorm().transpose();
-  const std::vector<double> longest = longestEdges(nodes, partition.embedding->tets->tets);
-  near_.resize(longest.size());
+  std::vector<double> longest;
+  std::vector<Index> place;
+  TaskGroup tasks;  // each one thread's work
+  tasks.run([&] { longest = longestEdges(nodes, partition.embedding->tets->tets); });
+  tasks.run([&] { place = firstOfPlace(nodes); });
+  near_.resize(static_cast<std::size_t>(nodes.cols()));
   values_.resize(sites.cols(), nodes.cols());
   least_.resize(static_cast<std::size_t>(nodes.cols()));
   parallelFor(exec, least_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
@@ -83,7 +87,7 @@ SiteValues::SiteValues(const Partition& partition, const Exec& exec) : siteOf_(s
     values_.middleCols(first, count).colwise() += squared;
   });
   // A product's last bits may hang on where a column stands in its block.
-  const std::vector<Index> place = firstOfPlace(nodes);
+  tasks.wait();
   for (std::size_t n = 0; n < place.size(); ++n)
     if (place[n] != static_cast<Index>(n)) values_.col(static_cast<Eigen::Index>(n)) = values_.col(place[n]);
   parallelFor(exec, least_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
