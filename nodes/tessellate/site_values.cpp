@@ -26,8 +26,9 @@ std::vector<Index> sitesByRank(const Eigen::MatrixXd& sites) {
 
 /// Does the site of rank w undercut that of rank k: less, or equal and of lower rank, at all four nodes?
 bool undercuts(const std::array<const double*, 4>& g, Index w, Index k) {
-  if (w < k) return g[0][w] <= g[0][k] && g[1][w] <= g[1][k] && g[2][w] <= g[2][k] && g[3][w] <= g[3][k];
-  return g[0][w] < g[0][k] && g[1][w] < g[1][k] && g[2][w] < g[2][k] && g[3][w] < g[3][k];
+  // Without branches, which would go either way.
+  if (w < k) return (g[0][w] <= g[0][k]) & (g[1][w] <= g[1][k]) & (g[2][w] <= g[2][k]) & (g[3][w] <= g[3][k]);
+  return (g[0][w] < g[0][k]) & (g[1][w] < g[1][k]) & (g[2][w] < g[2][k]) & (g[3][w] < g[3][k]);
 }
 
 /// Per node the least one of the same coordinates.
