@@ -123,7 +123,9 @@ class Arranger {
   /// Each crossing by the first of the segments that end there.
   void placeVertices() {
     a_.positions.resize(at(a_.firstNew) + places_.size());
-    copyPoints(positions_, a_.positions.data());
+    parallelFor(exec_, positions_.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+      copyPoints(positions_.subspan(begin, end - begin), a_.positions.data() + begin);
+    });
     copyPoints(sheets_.vertices, a_.positions.data() + a_.firstCrack);
     const double tolerance = 0x1p-52 * boxOf(tets_.nodes).diagonal();
     parallelFor(exec_, places_.size(), 256, [&](std::size_t begin, std::size_t end) {
