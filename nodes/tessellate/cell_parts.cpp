@@ -91,8 +91,11 @@ void CellParts::listUncut() {
 
 void CellParts::nameCells() {
   cell_.reserve(firstSheet_ + 2 * meshes_.sheet.parts());
-  for (const auto& triangles : uncut_)
-    cell_.push_back(arrangement_.surfaceLabel[at(arrangement_.surface[at(triangles[0])][0])]);
+  cell_.resize(uncut_.size());
+  parallelFor(exec_, uncut_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t part = begin; part < end; ++part)
+      cell_[part] = arrangement_.surfaceLabel[at(arrangement_.surface[at(uncut_[part][0])][0])];
+  });
   for (std::size_t k = 0; k < meshes_.skin.parts(); ++k)
     cell_.push_back(meshes_.skin.triangles[meshes_.skin.begin(k)].cell);
   for (std::size_t k = 0; k < meshes_.sheet.parts(); ++k) {
