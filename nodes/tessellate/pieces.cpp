@@ -20,6 +20,8 @@ namespace {
 /// Below this share of the body's volume a piece is integrated about a point of its own: sums about the
 /// body's centre would cost it digits.
 constexpr double kSmall = 1e-6;
+/// Skin triangles from which a piece is worth two threads.
+constexpr std::size_t kLarge = 1 << 15;
 
 class Assembler {
  public:
@@ -219,11 +221,25 @@ class Assembler {
                                         [](double sum, const SolidSums& s) { return sum + s.volume; });
     parallelFor(exec_, out_.pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        reserve(i);
-        for (const Index part : partsOf(i)) add(at(part), out_.pieces[i]);
+        fill(i);
         integrate(out_.pieces[i], sums_[i], sums_[i].volume < kSmall * body);
       }
     });
+  }
+
+  void fill(std::size_t i) {
+    reserve(i);
+    Piece& piece = out_.pieces[i];
+    if (piece.surface.capacity() < kLarge) {
+      for (const Index part : partsOf(i)) addCorners(at(part), piece), addOthers(at(part), piece);
+      return;
+    }
+    TaskGroup tasks;  // about as much to write each
+    tasks.run([&] {
+      for (const Index part : partsOf(i)) addCorners(at(part), piece);
+    });
+    for (const Index part : partsOf(i)) addOthers(at(part), piece);
+    tasks.wait();
   }
 
   void reserve(std::size_t i) {
@@ -242,18 +258,24 @@ class Assembler {
     piece.crackSheet.reserve(crack);
   }
 
-  void add(std::size_t part, Piece& piece) {
-    if (parts_->isUncut(part)) {
+  void addCorners(std::size_t part, Piece& piece) const {
+    if (parts_->isUncut(part))
       for (const Index t : parts_->uncutTriangles(part)) piece.surface.push_back(a_.surface[at(t)]);
+    else if (parts_->isSkin(part))
+      for (const SkinTriangle& skin : m_.skin.of(parts_->skinNumber(part)))
+        piece.surface.push_back(renumbered(skin.corners));
+  }
+
+  /// All but the skin's corners.
+  void addOthers(std::size_t part, Piece& piece) const {
+    if (parts_->isUncut(part)) {
       const auto triangles = parts_->uncutTriangles(part);
       piece.surfaceSource.insert(piece.surfaceSource.end(), triangles.begin(), triangles.end());
-      piece.surfaceCut.resize(piece.surface.size(), -1);
+      piece.surfaceCut.resize(piece.surfaceSource.size(), -1);
     } else if (parts_->isSkin(part)) {
       const std::size_t k = parts_->skinNumber(part);
       for (std::size_t t = m_.skin.begin(k); t < m_.skin.end(k); ++t) {
-        const SkinTriangle& skin = m_.skin.triangles[t];
-        piece.surface.push_back(renumbered(skin.corners));
-        piece.surfaceSource.push_back(skin.source);
+        piece.surfaceSource.push_back(m_.skin.triangles[t].source);
         piece.surfaceCut.push_back(static_cast<Index>(t));
       }
     } else if (isCrack(part)) {
