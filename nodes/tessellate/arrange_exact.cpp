@@ -32,15 +32,19 @@ class Arranger {
     findSegments();
     if (exec_.cancelled()) return cancelledError();
     number();
+    TaskGroup placing;  // nothing of this needs places
+    placing.run([this] { placeVertices(); });
+    sortSegments();
     nameSurfaceEdges();
+    groupBySurface(a_);
+    groupByPolygon(sheets_.polygons.size(), a_);
+    placing.wait();
     if (exec_.cancelled()) return cancelledError();
     TaskGroup tasks;
     tasks.run([this] { a_.same = equalPositions(a_); });
     SHERD_CHECK(orderCrossings());
     SHERD_CHECK(checkLabels());
     SHERD_CHECK(classifySheets(tets_, sheets_, a_));
-    groupBySurface(a_);
-    groupByPolygon(sheets_.polygons.size(), a_);
     tasks.wait();
     return std::move(a_);
   }
@@ -104,11 +108,13 @@ class Arranger {
     a_.firstNew = a_.firstCrack + static_cast<Index>(sheets_.vertices.size());
     takeEnds(surfaceEnds, positions_.size(), a_.surfaceCrossings);
     takeEnds(sheetEnds, sheets_.edges.size(), a_.sheetCrossings);
-    placeVertices();
     indexByEdge(a_.surfaceCrossings, a_.cutEdges.size());
     indexByEdge(a_.sheetCrossings, sheets_.edges.size());
+  }
+
+  void sortSegments() {
     bucketSort(
-        segments, triangles_.size(), [](const Segment& s) { return s.surface; },
+        a_.segments, triangles_.size(), [](const Segment& s) { return s.surface; },
         [](const Segment& x, const Segment& y) {
           return std::tie(x.surface, x.polygon) < std::tie(y.surface, y.polygon);
         });
@@ -117,7 +123,9 @@ class Arranger {
   /// Each crossing by the first of the segments that end there.
   void placeVertices() {
     a_.positions.resize(at(a_.firstNew) + places_.size());
-    copyPoints(positions_, a_.positions.data());
+    parallelFor(exec_, positions_.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+      copyPoints(positions_.subspan(begin, end - begin), a_.positions.data() + begin);
+    });
     copyPoints(sheets_.vertices, a_.positions.data() + a_.firstCrack);
     const double tolerance = 0x1p-52 * boxOf(tets_.nodes).diagonal();
     parallelFor(exec_, places_.size(), 256, [&](std::size_t begin, std::size_t end) {

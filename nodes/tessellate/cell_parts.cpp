@@ -17,10 +17,6 @@ CellParts::CellParts(const TetMesh& tets, const Sheets& sheets, const Arrangemen
   firstSkin_ = uncut_.size();
   firstSheet_ = firstSkin_ + meshes.skin.parts();
   nameCells();
-  TaskGroup tasks;  // most of joining is one thread's work
-  tasks.run([&] { join(isCut); });
-  sumUp(isCut);
-  tasks.wait();
 }
 
 void CellParts::join(std::span<const unsigned char> isCut) {
@@ -95,8 +91,11 @@ void CellParts::listUncut() {
 
 void CellParts::nameCells() {
   cell_.reserve(firstSheet_ + 2 * meshes_.sheet.parts());
-  for (const auto& triangles : uncut_)
-    cell_.push_back(arrangement_.surfaceLabel[at(arrangement_.surface[at(triangles[0])][0])]);
+  cell_.resize(uncut_.size());
+  parallelFor(exec_, uncut_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t part = begin; part < end; ++part)
+      cell_[part] = arrangement_.surfaceLabel[at(arrangement_.surface[at(uncut_[part][0])][0])];
+  });
   for (std::size_t k = 0; k < meshes_.skin.parts(); ++k)
     cell_.push_back(meshes_.skin.triangles[meshes_.skin.begin(k)].cell);
   for (std::size_t k = 0; k < meshes_.sheet.parts(); ++k) {
@@ -169,23 +168,33 @@ void CellParts::joinSheets(std::vector<Side>& sides) {
         sides.push_back(
             {std::min(e.from, e.to), std::max(e.from, e.to), cell_[part], static_cast<Index>(part)});
     }
+  DisjointSets bothSides(meshes_.sheet.parts());  // half the work for what goes on as it is
   std::vector<Index> around;
   for (std::size_t e = 0; e < sheets_.edges.size(); ++e) {
     around.clear();
     for (const Index corner : sheets_.cornersAlong(static_cast<Index>(e)))
-      if (const Index k = numberAt[at(corner)]; k >= 0)
-        around.push_back(static_cast<Index>(firstSheet_) + 2 * k);
-    joinAround(around);
+      if (const Index k = numberAt[at(corner)]; k >= 0) around.push_back(k);
+    joinAround(around, bothSides);
   }
+  for (std::size_t k = 0; k < meshes_.sheet.parts(); ++k)
+    if (const std::size_t one = bothSides.find(k); one != k)
+      for (const std::size_t side : {0u, 1u})
+        connected_.join(firstSheet_ + 2 * one + side, firstSheet_ + 2 * k + side);
 }
 
 /// Each cell around an edge of the sheets is bounded by two parts there.
-void CellParts::joinAround(std::span<const Index> sheetParts) {
-  for (std::size_t i = 0; i < sheetParts.size(); ++i)
-    for (const Index part : {sheetParts[i], sheetParts[i] + 1})
-      for (std::size_t k = i + 1; k < sheetParts.size(); ++k)
-        for (const Index other : {sheetParts[k], sheetParts[k] + 1})
-          if (cell_[at(part)] == cell_[at(other)]) connected_.join(at(part), at(other));
+void CellParts::joinAround(std::span<const Index> sheets, DisjointSets& bothSides) {
+  for (std::size_t i = 0; i < sheets.size(); ++i)
+    for (std::size_t k = i + 1; k < sheets.size(); ++k) {
+      const std::size_t part = firstSheet_ + 2 * at(sheets[i]), other = firstSheet_ + 2 * at(sheets[k]);
+      if (cell_[part] == cell_[other] && cell_[part + 1] == cell_[other + 1]) {
+        bothSides.join(at(sheets[i]), at(sheets[k]));
+        continue;
+      }
+      for (const std::size_t p : {part, part + 1})
+        for (const std::size_t o : {other, other + 1})
+          if (cell_[p] == cell_[o]) connected_.join(p, o);
+    }
 }
 
 /// Joins the parts with a side in common, found by hashing the edges.

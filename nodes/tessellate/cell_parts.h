@@ -19,10 +19,15 @@ namespace sherd {
 /// twice, as its back cell and as its front cell sees it.
 class CellParts {
  public:
-  /// `isCut`: per surface triangle. When exec is cancelled it ends soon with something unfinished. Cost
-  /// O(patches + triangles of patches with a cut one + new triangles).
+  /// `isCut`: per surface triangle, and the same for join() and sumUp(), without which connected() and sums()
+  /// know nothing; they may run at the same time. When exec is cancelled all three end soon with something
+  /// unfinished. Cost O(patches + triangles of patches with a cut one + new triangles).
   CellParts(const TetMesh& tets, const Sheets& sheets, const Arrangement& arrangement,
             const ClippedMeshes& meshes, std::span<const unsigned char> isCut, const Exec& exec);
+  /// Mostly one thread's work.
+  void join(std::span<const unsigned char> isCut);
+  /// In parallel.
+  void sumUp(std::span<const unsigned char> isCut);
 
   std::size_t size() const { return cell_.size(); }
   std::size_t firstSkin() const { return firstSkin_; }
@@ -79,14 +84,12 @@ class CellParts {
     const std::size_t patch = at(tets_.patches.patchOf[at(t)]);
     return at(partBegin_[patch] + (whole_[patch] ? 0 : partOf_[t]));
   }
-  void join(std::span<const unsigned char> isCut);
   void joinUncut(std::span<const unsigned char> isCut, std::vector<Side>& sides);
   void linkPatch(std::size_t patch, std::span<const unsigned char> isCut, PatchLinks& links) const;
   void addSkinBorders(std::vector<Side>& sides) const;
   void joinSheets(std::vector<Side>& sides);
-  void joinAround(std::span<const Index> sheetParts);
+  void joinAround(std::span<const Index> sheets, DisjointSets& bothSides);
   void joinSides(std::span<const Side> sides);
-  void sumUp(std::span<const unsigned char> isCut);
   void sumPatch(std::size_t patch, std::span<const unsigned char> isCut);
   void sumTriangles(std::size_t part);
   void sumSheet(std::size_t back);

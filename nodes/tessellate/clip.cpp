@@ -64,9 +64,10 @@ class Clipper {
   }
   int clipBlock(std::size_t block, CutPolygon& cut, PartedTriangles<SheetTriangle>& out) const {
     out.reserve(4 * kBlock, kBlock, 8 * kBlock);
+    std::vector<Index> corners;
     int forced = 0;
     for (std::size_t p = block * kBlock; p < std::min(sheets_.polygons.size(), (block + 1) * kBlock); ++p)
-      forced += clipPolygon(static_cast<Index>(p), cut, out);
+      forced += clipPolygon(static_cast<Index>(p), corners, cut, out);
     return forced;
   }
 
@@ -155,17 +156,22 @@ class Clipper {
     return cut.triangulate(out, [&](const Triangle& t, Index region) { return SkinTriangle{t, s, region}; });
   }
 
-  int clipPolygon(Index polygon, CutPolygon& cut, PartedTriangles<SheetTriangle>& out) const {
+  /// `corners` keeps its memory from polygon to polygon.
+  int clipPolygon(Index polygon, std::vector<Index>& corners, CutPolygon& cut,
+                  PartedTriangles<SheetTriangle>& out) const {
     const SheetPolygon& p = sheets_.polygons[at(polygon)];
     const std::span<const Index> own = sheets_.cornersOf(p);
     const Index first = a_.byPolygonBegin[at(polygon)], last = a_.byPolygonBegin[at(polygon) + 1];
     const bool crossed = first != last;
     if (!crossed && !a_.sheetInside[at(own[0])]) return 0;
-    std::vector<Index> corners(own.begin(), own.end());
+    corners.assign(own.begin(), own.end());
     for (Index& v : corners) v += a_.firstCrack;
     const std::size_t border = out.border.size();
-    int forced = 0;
-    if (crossed || !fan(corners, p, out)) forced = clipCorners(polygon, corners, cut, out);
+    if (!crossed && fan(corners, p, out)) {
+      nameAllEdges(p, std::span(out.border).subspan(border));
+      return 0;
+    }
+    const int forced = clipCorners(polygon, corners, cut, out);
     nameWholeEdges(p, corners, std::span(out.border).subspan(border));
     return forced;
   }
@@ -189,16 +195,24 @@ class Clipper {
     return cut.triangulate(out, [&](const Triangle& t, Index) { return SheetTriangle{t, p.front, p.back}; });
   }
 
+  /// Of a border between two corners of the sheets.
+  bool isOnCage(const BorderEdge& e) const {
+    return sheets_.onCage[at(e.from - a_.firstCrack)] && sheets_.onCage[at(e.to - a_.firstCrack)];
+  }
+
   /// Those that run from corner to corner, but for those on the cage's boundary, along which the skin may
   /// lie.
   void nameWholeEdges(const SheetPolygon& p, std::span<const Index> corners,
                       std::span<BorderEdge> border) const {
-    const auto onCage = [&](Index vertex) { return sheets_.onCage[at(vertex - a_.firstCrack)] != 0; };
     for (BorderEdge& e : border)
       for (std::size_t i = 0; i < corners.size(); ++i)
-        if (corners[i] == e.from && corners[(i + 1) % corners.size()] == e.to &&
-            !(onCage(e.from) && onCage(e.to)))
+        if (corners[i] == e.from && corners[(i + 1) % corners.size()] == e.to && !isOnCage(e))
           e.corner = p.first + static_cast<Index>(i);
+  }
+  /// Of a border that is the polygon's.
+  void nameAllEdges(const SheetPolygon& p, std::span<BorderEdge> border) const {
+    for (std::size_t i = 0; i < border.size(); ++i)
+      if (!isOnCage(border[i])) border[i].corner = p.first + static_cast<Index>(i);
   }
 
   /// A whole polygon, which is convex, by a fan from the corner that makes its smallest triangle largest.
@@ -209,7 +223,7 @@ class Clipper {
     const auto corner = [&](std::size_t i) { return corners[i % n]; };
     std::size_t best = 0;
     double largest = 0, longest = 0;
-    for (std::size_t apex = 0; apex < (n == 3 ? 1 : n == 4 ? 2 : n); ++apex) {
+    for (std::size_t apex = 0; apex < (n == 3 ? 0 : n == 4 ? 2 : n); ++apex) {
       double least = std::numeric_limits<double>::infinity();
       const Vec3& origin = a_.positions[at(corner(apex))];
       for (std::size_t i = 1; i + 1 < n; ++i) {

@@ -68,13 +68,16 @@ std::vector<Layer> combined(std::span<const Layer> stack) {
 class LayerRemover {
  public:
   LayerRemover(const Arrangement& a, ClippedMeshes& meshes, std::vector<unsigned char>& isCut)
-      : a_(a), meshes_(meshes), isCut_(isCut), tookIn_(a.positions.size(), 0) {}
+      : a_(a), meshes_(meshes), isCut_(isCut) {}
 
   void run() {
-    bool any = false;
-    for (std::size_t v = 0; v < tookIn_.size(); ++v)
-      if (a_.same[v] != static_cast<Index>(v)) any = true, tookIn_[at(a_.same[v])] = 1;
-    if (!any) return;
+    // The surface's own vertices all stay.
+    for (Index v = a_.firstCrack; at(v) < a_.same.size(); ++v) {
+      if (a_.same[at(v)] == v) continue;
+      tookIn_.resize(a_.same.size(), 0);
+      tookIn_[at(a_.same[at(v)])] = 1;
+    }
+    if (tookIn_.empty()) return;
     std::erase_if(meshes_.skin.triangles, [&](SkinTriangle& t) { return loseCorner(t.corners, a_.same); });
     std::erase_if(meshes_.sheet.triangles, [&](SheetTriangle& t) { return loseCorner(t.corners, a_.same); });
     gather();

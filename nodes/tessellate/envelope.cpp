@@ -1,9 +1,11 @@
 #include "tessellate/envelope.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/parallel_in_order.h"
 #include "geometry/approx.h"
 #include "tessellate/first_numbers.h"
 #include "tessellate/symbolic_sign.h"
@@ -16,7 +18,13 @@ constexpr std::size_t kBlock = 64;  ///< tetrahedra a task
 /// How much less extended precision is off than doubles are.
 constexpr double kExtended = 0x1p-11;
 
-std::uint64_t hashOf(const VertexName& name) { return hashOfIndices(name.ranks, hashOfIndices(name.nodes)); }
+std::uint64_t hashOf(const VertexName& name) {
+  const auto [a, b, c, d] = name.words();
+  const std::uint64_t nodes = (a * 0x9E3779B97F4A7C15ULL ^ b) * 0xC2B2AE3D27D4EB4FULL,
+                      ranks = (c * 0x9FB21C651E98DF25ULL ^ d) * 0xD6E8FEB86659FD93ULL;
+  const std::uint64_t both = nodes ^ std::rotl(ranks, 32);
+  return both ^ both >> 29;
+}
 
 template <class Number>
 Number determinant(const std::array<std::array<Number, 4>, 4>& m, std::size_t n) {
@@ -135,72 +143,86 @@ struct Block {
   void nameCorners() {
     FirstNumbers<VertexName> numbers(found.corners.size());
     nameOf.reserve(found.corners.size());
-    for (const VertexName& name : found.corners) {
-      const std::uint64_t hash = hashOf(name);
-      nameOf.push_back(numbers.numberOf(name, hash));
-      if (numbers.size() > hashes.size()) hashes.push_back(hash);
-    }
+    for (const VertexName& name : found.corners) nameOf.push_back(numbers.numberOf(name, hashOf(name)));
     names = numbers.take();
+    hashes = numbers.takeHashes();
   }
 };
 
-std::vector<Block> polygonsInBlocks(const TetMesh& tets, const SiteValues& values, const Exec& exec) {
-  const std::size_t n = tets.tets.size();
-  std::vector<Block> blocks((n + kBlock - 1) / kBlock);
-  parallelFor(exec, n, kBlock, [&](std::size_t begin, std::size_t end) {
-    std::vector<Index> candidates;
-    TetEnvelope envelope(tets, values);
-    Block& block = blocks[begin / kBlock];
-    for (std::size_t t = begin; t < end; ++t) {
-      if (liesOutside(tets, t)) continue;
-      values.candidates(tets.tets[t], candidates);
-      if (candidates.size() > 1) envelope.addPolygons(static_cast<Index>(t), candidates, block.found);
-    }
-    block.nameCorners();
-  });
-  return blocks;
+Block blockOf(const TetMesh& tets, const SiteValues& values, std::size_t begin, std::size_t end) {
+  std::vector<Index> candidates;
+  TetEnvelope envelope(tets, values);
+  Block block;
+  for (std::size_t t = begin; t < end; ++t) {
+    if (liesOutside(tets, t)) continue;
+    values.candidates(tets.tets[t], candidates);
+    if (candidates.size() > 1) envelope.addPolygons(static_cast<Index>(t), candidates, block.found);
+  }
+  block.nameCorners();
+  return block;
 }
 
-}  // namespace
+/// Puts the blocks together, one after the other.
+class Gatherer {
+ public:
+  Gatherer(const SiteValues& values, std::size_t tets) : values_(values), numbers_(tets) {}
 
-ExactSheets exactSheets(const TetMesh& tets, const SiteValues& values, const Exec& exec) {
-  const std::vector<Block> blocks = polygonsInBlocks(tets, values, exec);
-  ExactSheets result;
-  Sheets& sheets = result.sheets;
-  std::size_t corners = 0, named = 0;
-  for (const Block& block : blocks) corners += block.nameOf.size(), named += block.names.size();
-  FirstNumbers<VertexName> numbers(named);
-  sheets.corners.reserve(corners);
-  result.lines.reserve(corners);
-  std::vector<Index> numberOf;
-  for (const auto& [found, names, hashes, nameOf] : blocks) {
+  void add(const Block& block) {
+    const BlockPolygons& found = block.found;
+    Sheets& sheets = result.sheets;
     Index first = static_cast<Index>(sheets.corners.size());
     for (const BlockPolygons::Polygon& p : found.polygons) {
-      sheets.polygons.push_back({first, p.count, values.site(p.front), values.site(p.back), p.tet});
+      sheets.polygons.push_back({first, p.count, values_.site(p.front), values_.site(p.back), p.tet});
       result.ranks.push_back({p.back, p.front});
       first += p.count;
     }
-    numberOf.clear();
-    for (std::size_t k = 0; k < names.size(); ++k) numberOf.push_back(numbers.numberOf(names[k], hashes[k]));
-    sheets.onCage.resize(numbers.size(), 0);
-    for (std::size_t c = 0; c < nameOf.size(); ++c) {
-      const Index vertex = numberOf[at(nameOf[c])];
+    numberOf_.clear();
+    for (std::size_t k = 0; k < block.names.size(); ++k)
+      numberOf_.push_back(numbers_.numberOf(block.names[k], block.hashes[k]));
+    sheets.onCage.resize(numbers_.size(), 0);
+    for (std::size_t c = 0; c < block.nameOf.size(); ++c) {
+      const Index vertex = numberOf_[at(block.nameOf[c])];
       sheets.corners.push_back(vertex);
       sheets.onCage[at(vertex)] |= found.onCage[c];
     }
     result.lines.insert(result.lines.end(), found.lines.begin(), found.lines.end());
     sheets.cutTets += found.cutTets;
   }
-  const std::vector<VertexName> names = numbers.take();
+  std::vector<VertexName> takeNames() { return numbers_.take(); }
+
+  ExactSheets result;  ///< without places
+
+ private:
+  const SiteValues& values_;
+  FirstNumbers<VertexName> numbers_;
+  std::vector<Index> numberOf_;  ///< per name of a block
+};
+
+}  // namespace
+
+ExactSheets exactSheets(const TetMesh& tets, const SiteValues& values, const Exec& exec) {
+  const std::size_t n = tets.tets.size();
+  std::vector<Block> blocks((n + kBlock - 1) / kBlock);
+  Gatherer gatherer(values, n);
+  parallelInOrder(
+      exec, blocks.size(),
+      [&](std::size_t b) { blocks[b] = blockOf(tets, values, b * kBlock, std::min(n, (b + 1) * kBlock)); },
+      [&](std::size_t b) {
+        gatherer.add(blocks[b]);
+        blocks[b] = {};
+      });
+  const std::vector<VertexName> names = gatherer.takeNames();
+  Sheets& sheets = gatherer.result.sheets;
   sheets.vertices.resize(names.size());
-  sheets.simplexOf.reserve(names.size());
-  for (const VertexName& name : names) sheets.simplexOf.push_back(name.nodes);
+  sheets.simplexOf.resize(names.size());
   const double tolerance = 0x1p-52 * boxOf(tets.nodes).diagonal();
   parallelFor(exec, names.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
+    for (std::size_t v = begin; v < end; ++v) {
+      sheets.simplexOf[v] = names[v].nodes;
       sheets.vertices[v] = positionOf(names[v], values, tets, tolerance);
+    }
   });
-  return result;
+  return std::move(gatherer.result);
 }
 
 }  // namespace sherd

@@ -20,6 +20,8 @@ namespace {
 /// Below this share of the body's volume a piece is integrated about a point of its own: sums about the
 /// body's centre would cost it digits.
 constexpr double kSmall = 1e-6;
+/// Skin triangles from which a piece is worth two threads.
+constexpr std::size_t kLarge = 1 << 15;
 
 class Assembler {
  public:
@@ -36,9 +38,17 @@ class Assembler {
     out_.counts.forcedTriangles = m_.forced - std::min(m_.forced, absorbed);
     parts_.emplace(tets_, sheets_, a_, m_, isCut, exec_);
     if (exec_.cancelled()) return {};
+    TaskGroup summing, others;  // beside what is one thread's work
+    summing.run([&] { parts_->sumUp(isCut); });
+    others.run([this] { weighCorners(); });
+    others.run([this] { findAllUsed(); });
+    parts_->join(isCut);
+    summing.wait();
+    if (exec_.cancelled()) return {};
     findPieces();
-    numberSheets();
-    numberVertices();
+    const bool allSheets = numberSheets();
+    others.wait();
+    numberVertices(forgetLeftOut() && allSheets);
     takePositions();
     fillPieces();
     if (exec_.cancelled()) return {};
@@ -104,32 +114,48 @@ class Assembler {
     return pieceOf_[sheetPart] != pieceOf_[parts_->twin(sheetPart)];
   }
 
-  /// Sheets are numbered as they come.
-  void numberSheets() {
+  /// Sheets are numbered as they come. False where some are no cracks.
+  bool numberSheets() {
     FirstNumbers<std::array<Index, 2>> numbers(m_.sheet.parts());
     sheetNumbers_.assign(m_.sheet.parts(), -1);
+    bool all = true;
     for (std::size_t k = 0; k < sheetNumbers_.size(); ++k) {
       const std::size_t back = parts_->firstSheet() + 2 * k;
+      all = all && isCrack(back);
       if (!isCrack(back)) continue;
       const Index one = parts_->cell(back), other = parts_->cell(back + 1);
       const std::array<Index, 2> cells{std::min(one, other), std::max(one, other)};
       sheetNumbers_[k] = numbers.numberOf(cells, hashOfIndices(cells));
     }
+    return all;
+  }
+
+  /// Finds the new vertices of parts of the skin and of the sheets, given by number.
+  template <class Skin, class Sheet>
+  void findUsed(Skin isSkinKept, Sheet isSheetKept) {
+    number_.assign(a_.positions.size() - at(a_.firstCrack), -1);
+    const auto use = [&](const auto& triangles) {
+      for (const auto& t : triangles)
+        for (const Index v : t.corners)
+          if (v >= a_.firstCrack) number_[at(v - a_.firstCrack)] = 0;
+    };
+    for (std::size_t k = 0; k < m_.skin.parts(); ++k)
+      if (isSkinKept(k)) use(m_.skin.of(k));
+    for (std::size_t k = 0; k < m_.sheet.parts(); ++k)
+      if (isSheetKept(k)) use(m_.sheet.of(k));
+  }
+
+  /// Before it is known what is left out.
+  void findAllUsed() {
+    const auto all = [](std::size_t) { return true; };
+    findUsed(all, all);
   }
 
   /// New vertices that no piece uses are left out; the source's own stay, in their order.
-  void numberVertices() {
-    number_.assign(a_.positions.size() - at(a_.firstCrack), -1);
-    const auto use = [&](const Triangle& t) {
-      for (const Index v : t)
-        if (v >= a_.firstCrack) number_[at(v - a_.firstCrack)] = 0;
-    };
-    for (std::size_t k = 0; k < m_.skin.parts(); ++k)
-      if (pieceOf_[parts_->firstSkin() + k] >= 0)
-        for (const SkinTriangle& t : m_.skin.of(k)) use(t.corners);
-    for (std::size_t k = 0; k < m_.sheet.parts(); ++k)
-      if (sheetNumbers_[k] >= 0)
-        for (const SheetTriangle& t : m_.sheet.of(k)) use(t.corners);
+  void numberVertices(bool allKept) {
+    if (!allKept)
+      findUsed([this](std::size_t k) { return pieceOf_[parts_->firstSkin() + k] >= 0; },
+               [this](std::size_t k) { return sheetNumbers_[k] >= 0; });
     Index next = a_.firstCrack;
     for (Index& n : number_)
       if (n == 0) n = next++;
@@ -141,7 +167,8 @@ class Assembler {
     return {renumbered(t[0]), renumbered(t[1]), renumbered(t[2])};
   }
 
-  const Vec3& position(Index vertex) const { return out_.positions[at(renumbered(vertex))]; }
+  /// Before takePositions().
+  const Vec3& position(Index vertex) const { return a_.positions[at(vertex)]; }
 
   /// Weights of the corners of `source` at a vertex in it.
   CornerWeights weights(const Triangle& source, Index vertex) const {
@@ -158,19 +185,61 @@ class Assembler {
     return barycentric(position(source[0]), position(source[1]), position(source[2]), position(vertex));
   }
 
-  void fillPieces() {
-    cutEdgeOf_.assign(number_.size(), -1);
+  void weighCorners() {
+    cutEdgeOf_.assign(a_.positions.size() - at(a_.firstCrack), -1);
     for (const Crossing& x : a_.surfaceCrossings.list) cutEdgeOf_[at(x.vertex - a_.firstCrack)] = x.edge;
     out_.cutCorners.resize(m_.skin.triangles.size());
+    parallelFor(exec_, m_.skin.triangles.size(), 256, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::pair<Index, CornerWeights>> known;  // in the triangle's source
+      for (std::size_t t = begin; t < end; ++t) {
+        const SkinTriangle& skin = m_.skin.triangles[t];
+        if (t == begin || skin.source != m_.skin.triangles[t - 1].source) known.clear();
+        for (std::size_t c = 0; c < 3; ++c) {
+          const Index v = skin.corners[c];
+          auto found = std::ranges::find(known, v, [](const auto& k) { return k.first; });
+          if (found == known.end()) found = known.insert(found, {v, weights(a_.surface[at(skin.source)], v)});
+          out_.cutCorners[t][c] = found->second;
+        }
+      }
+    });
+  }
+
+  /// Skin that no piece has keeps no weights. False where there is some.
+  bool forgetLeftOut() {
+    bool none = true;
+    for (std::size_t k = 0; k < m_.skin.parts(); ++k) {
+      if (pieceOf_[parts_->firstSkin() + k] >= 0) continue;
+      none = false;
+      for (std::size_t t = m_.skin.begin(k); t < m_.skin.end(k); ++t)
+        out_.cutCorners[t].fill(CornerWeights::Zero());
+    }
+    return none;
+  }
+
+  void fillPieces() {
     const double body = std::accumulate(sums_.begin(), sums_.end(), 0.0,
                                         [](double sum, const SolidSums& s) { return sum + s.volume; });
     parallelFor(exec_, out_.pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        reserve(i);
-        for (const Index part : partsOf(i)) add(at(part), out_.pieces[i]);
+        fill(i);
         integrate(out_.pieces[i], sums_[i], sums_[i].volume < kSmall * body);
       }
     });
+  }
+
+  void fill(std::size_t i) {
+    reserve(i);
+    Piece& piece = out_.pieces[i];
+    if (piece.surface.capacity() < kLarge) {
+      for (const Index part : partsOf(i)) addCorners(at(part), piece), addOthers(at(part), piece);
+      return;
+    }
+    TaskGroup tasks;  // about as much to write each
+    tasks.run([&] {
+      for (const Index part : partsOf(i)) addCorners(at(part), piece);
+    });
+    for (const Index part : partsOf(i)) addOthers(at(part), piece);
+    tasks.wait();
   }
 
   void reserve(std::size_t i) {
@@ -189,20 +258,24 @@ class Assembler {
     piece.crackSheet.reserve(crack);
   }
 
-  void add(std::size_t part, Piece& piece) {
-    if (parts_->isUncut(part)) {
+  void addCorners(std::size_t part, Piece& piece) const {
+    if (parts_->isUncut(part))
       for (const Index t : parts_->uncutTriangles(part)) piece.surface.push_back(a_.surface[at(t)]);
+    else if (parts_->isSkin(part))
+      for (const SkinTriangle& skin : m_.skin.of(parts_->skinNumber(part)))
+        piece.surface.push_back(renumbered(skin.corners));
+  }
+
+  /// All but the skin's corners.
+  void addOthers(std::size_t part, Piece& piece) const {
+    if (parts_->isUncut(part)) {
       const auto triangles = parts_->uncutTriangles(part);
       piece.surfaceSource.insert(piece.surfaceSource.end(), triangles.begin(), triangles.end());
-      piece.surfaceCut.resize(piece.surface.size(), -1);
+      piece.surfaceCut.resize(piece.surfaceSource.size(), -1);
     } else if (parts_->isSkin(part)) {
       const std::size_t k = parts_->skinNumber(part);
       for (std::size_t t = m_.skin.begin(k); t < m_.skin.end(k); ++t) {
-        const SkinTriangle& skin = m_.skin.triangles[t];
-        for (std::size_t c = 0; c < 3; ++c)
-          out_.cutCorners[t][c] = weights(a_.surface[at(skin.source)], skin.corners[c]);
-        piece.surface.push_back(renumbered(skin.corners));
-        piece.surfaceSource.push_back(skin.source);
+        piece.surfaceSource.push_back(m_.skin.triangles[t].source);
         piece.surfaceCut.push_back(static_cast<Index>(t));
       }
     } else if (isCrack(part)) {

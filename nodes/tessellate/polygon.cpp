@@ -167,7 +167,8 @@ class EarCutter {
     for (std::size_t k = 0; k < loop_.size(); ++k) {
       const Vec2& x = points_[k];
       const Index corner = loop_[k];
-      const bool isBeyond = x.x() < low.x() || x.x() > high.x() || x.y() < low.y() || x.y() > high.y();
+      // Without branches, which would go either way.
+      const bool isBeyond = (x.x() < low.x()) | (x.x() > high.x()) | (x.y() < low.y()) | (x.y() > high.y());
       // Rounding may have put a corner on one of the ear's sides beyond it.
       if (isBeyond && (plane_->lines(corner) & sides) == 0) continue;
       if (corner != a && corner != b && corner != c && plane_->inClosedTriangle(a, b, c, corner)) return -1;

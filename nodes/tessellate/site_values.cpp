@@ -26,8 +26,9 @@ std::vector<Index> sitesByRank(const Eigen::MatrixXd& sites) {
 
 /// Does the site of rank w undercut that of rank k: less, or equal and of lower rank, at all four nodes?
 bool undercuts(const std::array<const double*, 4>& g, Index w, Index k) {
-  if (w < k) return g[0][w] <= g[0][k] && g[1][w] <= g[1][k] && g[2][w] <= g[2][k] && g[3][w] <= g[3][k];
-  return g[0][w] < g[0][k] && g[1][w] < g[1][k] && g[2][w] < g[2][k] && g[3][w] < g[3][k];
+  // Without branches, which would go either way.
+  if (w < k) return (g[0][w] <= g[0][k]) & (g[1][w] <= g[1][k]) & (g[2][w] <= g[2][k]) & (g[3][w] <= g[3][k]);
+  return (g[0][w] < g[0][k]) & (g[1][w] < g[1][k]) & (g[2][w] < g[2][k]) & (g[3][w] < g[3][k]);
 }
 
 /// Per node the least one of the same coordinates.
@@ -72,8 +73,12 @@ SiteValues::SiteValues(const Partition& partition, const Exec& exec) : siteOf_(s
   for (std::size_t r = 0; r < siteOf_.size(); ++r)
     sites.col(static_cast<Eigen::Index>(r)) = partition.sites.col(siteOf_[r]) - mean;
   const Eigen::VectorXd squared = sites.colwise().squaredNorm().transpose();
-  const std::vector<double> longest = longestEdges(nodes, partition.embedding->tets->tets);
-  near_.resize(longest.size());
+  std::vector<double> longest;
+  std::vector<Index> place;
+  TaskGroup tasks;  // each one thread's work
+  tasks.run([&] { longest = longestEdges(nodes, partition.embedding->tets->tets); });
+  tasks.run([&] { place = firstOfPlace(nodes); });
+  near_.resize(static_cast<std::size_t>(nodes.cols()));
   values_.resize(sites.cols(), nodes.cols());
   least_.resize(static_cast<std::size_t>(nodes.cols()));
   parallelFor(exec, least_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
@@ -83,7 +88,7 @@ SiteValues::SiteValues(const Partition& partition, const Exec& exec) : siteOf_(s
     values_.middleCols(first, count).colwise() += squared;
   });
   // A product's last bits may hang on where a column stands in its block.
-  const std::vector<Index> place = firstOfPlace(nodes);
+  tasks.wait();
   for (std::size_t n = 0; n < place.size(); ++n)
     if (place[n] != static_cast<Index>(n)) values_.col(static_cast<Eigen::Index>(n)) = values_.col(place[n]);
   parallelFor(exec, least_.size(), kBlock, [&](std::size_t begin, std::size_t end) {

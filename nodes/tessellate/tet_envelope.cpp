@@ -6,6 +6,38 @@
 #include "tessellate/symbolic_sign.h"
 
 namespace sherd {
+namespace {
+
+/// A polygon's edges by the faces that they lie on.
+struct Start {
+  std::size_t count = 0;
+  std::array<Index, 4> lines{};
+};
+
+/// The plane between two cells in a tetrahedron, by which corners of that are in the back cell (bits).
+constexpr std::array<Start, 16> kStart = [] {
+  std::array<Start, 16> starts{};
+  for (int back = 1; back < 15; ++back) {
+    std::array<Index, 4> order{};
+    int low = 0, high = 3;
+    for (int i = 0; i < 4; ++i) order[at((back >> i & 1) != 0 ? low++ : high--)] = i;
+    // Corners in the back cell first; an odd reordering is made even within one cell.
+    int inversions = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = i + 1; j < 4; ++j) inversions += order[i] > order[j];
+    if (inversions % 2 == 1) low == 1 ? std::swap(order[2], order[3]) : std::swap(order[0], order[1]);
+    const auto [a, b, c, d] = order;
+    if (low == 1)  // corners on ab, ac, ad
+      starts[at(back)] = {3, {d, b, c}};
+    else if (low == 3)  // bd, cd, ad
+      starts[at(back)] = {3, {a, b, c}};
+    else  // ad, bd, bc, ac
+      starts[at(back)] = {4, {c, a, d, b}};
+  }
+  return starts;
+}();
+
+}  // namespace
 
 class TetEnvelope::Impl {
  public:
@@ -65,41 +97,16 @@ class TetEnvelope::Impl {
     }
   }
 
-  /// Where g_plus − g_minus is at a corner of the tetrahedron, with ties.
-  int signAtNode(Index plus, Index minus, std::size_t node) const {
-    const double a = g_[node][plus], b = g_[node][minus];
-    if (a != b) return a > b ? 1 : -1;
-    return plus < minus ? -1 : 1;
-  }
-
   /// The plane g_back = g_front in the tetrahedron; false where it misses that.
   bool startPolygon() {
-    std::array<int, 4> order{};
-    int low = 0, high = 3;
-    for (int i = 0; i < 4; ++i)
-      order[static_cast<std::size_t>(
-          signAtNode(front_, back_, static_cast<std::size_t>(i)) > 0 ? low++ : high--)] = i;
-    if (low == 0 || low == 4) return false;
-    // Corners in the back cell first; an odd reordering is made even within one cell.
-    int inversions = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = i + 1; j < 4; ++j) inversions += order[i] > order[j];
-    if (inversions % 2 == 1) low == 1 ? std::swap(order[2], order[3]) : std::swap(order[0], order[1]);
-    const auto [a, b, c, d] = order;
-    if (low == 1)  // corners on ab, ac, ad
-      takeLines({d, b, c});
-    else if (low == 3)  // bd, cd, ad
-      takeLines({a, b, c});
-    else  // ad, bd, bc, ac
-      takeLines({c, a, d, b});
-    return true;
-  }
-
-  void takeLines(std::initializer_list<Line> lines) {
-    count_ = lines.size();
-    std::copy(lines.begin(), lines.end(), lines_.begin());
-    for (std::size_t i = 0; i < count_; ++i)
-      placeOnEdge(lines_[i == 0 ? count_ - 1 : i - 1], lines_[i], corners_[i]);
+    std::size_t back = 0;
+    for (std::size_t i = 0; i < 4; ++i)  // ties go to the lower rank, the back
+      back |= static_cast<std::size_t>(g_[i][front_] >= g_[i][back_]) << i;
+    const Start& start = kStart[back];
+    count_ = start.count;
+    std::copy(start.lines.begin(), start.lines.end(), lines_.begin());
+    for (std::size_t i = 0; i < count_; ++i) placeOnEdge(lines_[before(i)], lines_[i], corners_[i]);
+    return count_ > 0;
   }
 
   /// Where the plane meets the edge that two faces share.
@@ -207,38 +214,38 @@ class TetEnvelope::Impl {
     return sign * determinantSign(all, std::span(pairs).first(functions + 1));
   }
 
-  /// g_third − g_back at all corners, and how far off each may be.
-  void evaluate(Index third) {
+  /// The signs of g_third − g_back at all corners; returns how many are positive. Branches that go either
+  /// way would take most of the time.
+  std::size_t evaluate(Index third) {
     std::array<double, 4> difference;
     double sum = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       difference[i] = g_[i][third] - g_[i][back_];
       sum += std::abs(difference[i]);
     }
+    std::size_t positive = 0;
+    bool isOpen = false;
     for (std::size_t i = 0; i < count_; ++i) {
       const Corner& c = corners_[i];
-      double value = 0, size = 0;
-      for (std::size_t k = 0; k < 4; ++k) {
-        value += c.weight[k] * difference[k];
-        size += std::abs(c.weight[k] * difference[k]);
-      }
-      valueAt_[i] = value;
-      errorAt_[i] = 1.01 * (8 * 0x1p-53 * size + c.error * sum) + 0x1p-1000;
+      const auto term = [&](std::size_t k) { return c.weight[k] * difference[k]; };
+      const double value = (term(0) + term(2)) + (term(1) + term(3));
+      const double error = 1.01 * ((8 * 0x1p-53 + c.error) * sum) + 0x1p-1000;  // weights are at most 1
+      valueAt_[i] = value, errorAt_[i] = error;
+      signs_[i] = static_cast<int>(value > error) - static_cast<int>(value < -error);
+      positive += value > error;
+      isOpen |= signs_[i] == 0;
     }
+    for (std::size_t i = 0; isOpen && i < count_; ++i)
+      if (signs_[i] == 0) {
+        signs_[i] = signAtCorner(lines_[before(i)], lines_[i], third);
+        positive += signs_[i] > 0;
+      }
+    return positive;
   }
 
   /// Keeps where g_third ≥ g_back; false where nothing is left.
   bool clipBy(Index third) {
-    evaluate(third);
-    const std::size_t n = count_;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (std::abs(valueAt_[i]) > errorAt_[i])
-        signs_[i] = valueAt_[i] > 0 ? 1 : -1;
-      else
-        signs_[i] = signAtCorner(lines_[before(i)], lines_[i], third);
-      kept += signs_[i] > 0;
-    }
+    const std::size_t n = count_, kept = evaluate(third);
     if (kept == n) return true;
     if (kept == 0) return false;
     // The kept corners follow one another; begin with the first of them.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -13,7 +15,12 @@ namespace sherd {
 /// Names a vertex: nodes and ranks, each ascending and padded with −1.
 struct VertexName {
   Tetra nodes{-1, -1, -1, -1}, ranks{-1, -1, -1, -1};
-  friend bool operator==(const VertexName&, const VertexName&) = default;
+  /// Both, as numbers that are quick to compare.
+  std::array<std::uint64_t, 4> words() const { return std::bit_cast<std::array<std::uint64_t, 4>>(*this); }
+  friend bool operator==(const VertexName& x, const VertexName& y) {
+    const auto a = x.words(), b = y.words();
+    return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2]) | (a[3] ^ b[3])) == 0;
+  }
   std::size_t dimension() const { return nodes[2] < 0 ? 1 : nodes[3] < 0 ? 2 : 3; }
 };
 

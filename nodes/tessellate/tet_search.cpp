@@ -3,6 +3,16 @@
 #include <algorithm>
 
 namespace sherd {
+namespace {
+
+/// As Box::overlaps(), without branches, which would go either way.
+bool overlap(const Box& a, const Box& b) {
+  bool all = true;
+  for (Eigen::Index k = 0; k < 3; ++k) all &= (a.low[k] <= b.high[k]) & (b.low[k] <= a.high[k]);
+  return all;
+}
+
+}  // namespace
 
 void TetSearch::search(Index first, Index last, FoundSegments& out) {
   const Index tet = exact_.sheets.polygons[at(first)].tet;
@@ -18,7 +28,7 @@ void TetSearch::search(Index first, Index last, FoundSegments& out) {
     Box box;
     for (const Index v : corners) box.add(positions[at(v)]);
     for (Index p = first; p < last; ++p) {
-      if (!box.overlaps(boxes_[at(p - first)])) continue;
+      if (!overlap(box, boxes_[at(p - first)])) continue;
       if (planes_[at(p - first)].misses(positions[at(corners[0])], positions[at(corners[1])],
                                         positions[at(corners[2])]))
         continue;

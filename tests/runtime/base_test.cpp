@@ -8,6 +8,7 @@
 
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "base/parallel_in_order.h"
 #include "base/result.h"
 #include "base/rng.h"
 
@@ -137,6 +138,37 @@ TEST_P(Parallel, RethrowsAndCanBeCancelled) {
   });
   EXPECT_LT(ran, 100000);
   EXPECT_TRUE(exec.cancelled());
+}
+
+TEST_P(Parallel, InOrderTakesEachBlockOnceAndOneByOne) {
+  for (const std::size_t blocks : {0u, 1u, 2u, 3000u}) {
+    std::vector<std::size_t> made(blocks, 0), taken;  // without a lock: sanitizers would see two at once
+    inArena([&] {
+      parallelInOrder(
+          Exec{}, blocks, [&](std::size_t block) { made[block] += block + 1; },
+          [&](std::size_t block) { taken.push_back(made[block]); });
+    });
+    ASSERT_EQ(taken.size(), blocks);
+    for (std::size_t block = 0; block < blocks; ++block) EXPECT_EQ(taken[block], block + 1);
+  }
+}
+
+TEST_P(Parallel, InOrderRethrowsAndCanBeCancelled) {
+  const auto nothing = [](std::size_t) {};
+  const auto fails = [](std::size_t block) {
+    if (block == 10) throw std::runtime_error("x");
+  };
+  EXPECT_THROW(parallelInOrder(Exec{}, 1000, fails, nothing), std::runtime_error);
+  EXPECT_THROW(parallelInOrder(Exec{}, 1000, nothing, fails), std::runtime_error);
+  CancelToken token;
+  Exec exec;
+  exec.cancel = &token;
+  std::size_t taken = 0;
+  parallelInOrder(exec, 100000, nothing, [&](std::size_t block) {
+    EXPECT_EQ(block, taken++);
+    if (block == 10) token.cancel();
+  });
+  EXPECT_LT(taken, 100000u);
 }
 
 TEST_P(Parallel, TasksMayStartTasks) {
