@@ -76,10 +76,7 @@ class CageBuilder {
       SHERD_ASSIGN(cage, attempt());
     }
     if (!cage && spare_) {
-      exec_.warn(
-          fmt::format("the cage has {} where the surface has {}: it bridges gaps and holes that are "
-                      "smaller than its edges",
-                      describeTopology(spareTopology_), describeTopology(wanted_)));
+      exec_.warn(countsText(spareTopology_) + ": it bridges gaps and holes that are smaller than its edges");
       cage = std::move(spare_);
     }
     if (!cage) return *problem_;
@@ -156,9 +153,18 @@ class CageBuilder {
     return gap.detour > std::max(edges * nominal_, 1.3 * gap.width);
   }
 
+  /// In the coordinates of the file that the surface came from, where artists look for it.
+  std::string near(const Vec3& metres) const { return "near " + placeText(mesh_->frame.toFile(metres)); }
+
+  static std::string remedy(const std::string& inTheModel, bool moreMayHelp) {
+    return inTheModel +
+           ", or put Repair with the mode `rebuild` before this node, which closes what is narrow" +
+           (moreMayHelp ? "; or ask for more tetrahedra" : "");
+  }
+
   std::string gapText(const Gap& gap) const {
-    return fmt::format("the gap of {:.3g} m at {} m", gap.width * surface_.size,
-                       placeText(surface_.toMetres(gap.middle())));
+    return fmt::format("the gap of {:.3g} m {}", gap.width * surface_.size,
+                       near(surface_.toMetres(gap.middle())));
   }
 
   static std::string edgesText(double metres) {
@@ -216,7 +222,7 @@ class CageBuilder {
                      "ask for a longer edge or more tetrahedra", "mesh");
     return failure(fmt::format("{} cannot be kept open: {}, about {:.0f} tetrahedra in all",
                                gapText(*narrowest), edgesText(*narrowest), expected),
-                   "close or widen the gap in the model, or ask for more tetrahedra", "mesh");
+                   remedy("close or widen the gap in the model", true), "mesh");
   }
 
   /// Runs Mesh_3 until number of tetrahedra or mean edge length is as asked for, by the secant rule on
@@ -285,9 +291,9 @@ class CageBuilder {
 
   bool wantEnclosure(const TetMesh& cage, const std::vector<Breach>& breaches) {
     problem_ =
-        failure(fmt::format("the surface could not be enclosed: it comes through the cage at {} m and {} "
+        failure(fmt::format("the surface could not be enclosed: it comes through the cage {} and in {} "
                             "other places",
-                            placeText(breaches.front().place), breaches.size() - 1),
+                            near(breaches.front().place), breaches.size() - 1),
                 "ask for more tetrahedra, or repair the surface there", "mesh");
     for (const Breach& b : breaches) {
       Vec3 middle = Vec3::Zero();
@@ -316,7 +322,7 @@ class CageBuilder {
     const std::vector<Gap> closed = closedGaps(cage, sizes_.open);
     if (closed.empty()) return true;
     problem_ = failure(gapText(closed.front()) + " could not be kept open: " + edgesText(closed.front()),
-                       "widen or close it in the model, or ask for more tetrahedra", "mesh");
+                       remedy("widen or close it in the model", true), "mesh");
     for (const Gap& gap : closed) addFiner(gap.middle(), 0.6);
     return false;
   }
@@ -326,13 +332,14 @@ class CageBuilder {
     if (joinsSome(got, wanted_)) return wantBodiesApart(cage, got);
     const bool bridged = refineBridges(cage);
     problem_ =
-        failure(fmt::format("the cage has {} where the surface has {}{}", describeTopology(got),
-                            describeTopology(wanted_), closedGapText(cage)),
-                bridgesAreNarrow_ ? "widen or close narrow gaps and holes in the model"
-                                  : "widen or close narrow gaps and holes in the model, or ask for more "
-                                    "tetrahedra",
-                "mesh");
+        failure(closedGapText(cage, countsText(got)),
+                remedy("widen or close narrow gaps and holes in the model", !bridgesAreNarrow_), "mesh");
     return wantFiner(bridged);
+  }
+
+  std::string countsText(const std::vector<std::pair<bool, int>>& got) const {
+    return fmt::format("the cage has {} where the surface has {}", describeTopology(got),
+                       describeTopology(wanted_));
   }
 
   /// Where the cage spans no gap it can be told to keep to the surface.
@@ -358,12 +365,11 @@ class CageBuilder {
                          });
     if (isFirst && isKnown) between_->gaps.clear();
     isTooNarrow_ = !isKnown && narrowest && (between_->isTooMany || narrowest->width < kNarrowestGap);
-    problem_ = failure(
-        fmt::format(
-            "the cage has {} where the surface has {}{}", describeTopology(got), describeTopology(wanted_),
-            narrowest ? "; it closes " + gapText(*narrowest) + " between two bodies: " + edgesText(*narrowest)
-                      : ""),
-        "join the bodies or move them apart in the model", "mesh");
+    problem_ = failure(fmt::format("{}{}", countsText(got),
+                                   narrowest ? "; it closes " + gapText(*narrowest) +
+                                                   " between two bodies: " + edgesText(*narrowest)
+                                             : ""),
+                       "join the bodies or move them apart in the model", "mesh");
     if (isTooNarrow_) return false;
     if (isFirst && narrowest && !isKnown) {
       chooseGaps();
@@ -372,18 +378,20 @@ class CageBuilder {
     return wantFiner(refineBridges(cage));
   }
 
-  std::string closedGapText(const TetMesh& cage) const {
+  /// What a cage closes, where that is known, else what it has: counts of the surface and of the cage.
+  std::string closedGapText(const TetMesh& cage, const std::string& counts) const {
     const SurfaceTree boundary(cage.nodes, cage.boundary);
     const Gap* narrowest = nullptr;
     for (const Gap& gap : gaps_)
       if ((narrowest == nullptr || gap.width < narrowest->width) &&
           boundary.contains(surface_.toMetres(gap.middle())))
         narrowest = &gap;
-    if (narrowest != nullptr) return "; " + gapText(*narrowest) + " is closed: " + edgesText(*narrowest);
-    if (!bridge_) return "";
-    const double width = 2 * tree_.closest(*bridge_).distance * surface_.size;
-    return fmt::format("; the gap of about {:.3g} m at {} m is closed: {}", width,
-                       placeText(surface_.toMetres(*bridge_)), edgesText(kEdgeOfGap * width));
+    if (narrowest == nullptr && !bridge_) return counts;
+    const double width = narrowest != nullptr ? narrowest->width : 2 * tree_.closest(*bridge_).distance;
+    const Vec3 place = narrowest != nullptr ? narrowest->middle() : *bridge_;
+    return fmt::format("the tetrahedra around the model close the gap of about {:.3g} m {}: {} ({})",
+                       width * surface_.size, near(surface_.toMetres(place)),
+                       edgesText(kEdgeOfGap * width * surface_.size), counts);
   }
 
   /// Asks for finer meshing where the cage lies clearly outside the level set, as where it spans a gap.

@@ -59,10 +59,10 @@ struct TetrahedralizeParams {
 ///
 /// Errors: more than 5 million tetrahedra asked for; edges that no tetrahedron of the body has room for; an
 /// empty, open, non-manifold or inside-out surface or one with NaN; a gap that cannot be kept open, with its
-/// place (m), its width (m) and the edge length (m) that would keep it open, at once where bodies are too
-/// near for any cage; a surface that could not be enclosed, with the place. Deterministic: the same input
-/// gives the same bits for any number of threads. Cost: a few Mesh_3 runs of O(tets) each (about a second for
-/// 5,000), plus O(triangles log triangles).
+/// place (in the file's coordinates), its width (m) and the edge length (m) that would keep it open, at once
+/// where bodies are too near for any cage; a surface that could not be enclosed, with the place.
+/// Deterministic: the same input gives the same bits for any number of threads. Cost: a few Mesh_3 runs of
+/// O(tets) each (about a second for 5,000), plus O(triangles log triangles).
 Result<TetMesh> tetrahedralize(std::shared_ptr<const TriMesh> surface, const TetrahedralizeParams& params,
                                const Exec& exec);
 

@@ -27,6 +27,8 @@ TEST(Pinhole, IsBridgedWithAWarning) {
   EXPECT_EQ(cageTopology(*cage), std::make_pair(1, 2));
   EXPECT_TRUE(said.warning(
       "the cage has 1 component, 0 voids, 0 handles where the surface has 1 component, 0 voids, 1 handle"));
+  EXPECT_TRUE(said.info("the tetrahedra around the model close the gap of about 0.00"));
+  EXPECT_TRUE(said.info("would keep it open (the cage has 1 component"));
 }
 
 TEST(Pinhole, AHoleAsWideAsEdgesStaysOpen) {

@@ -130,8 +130,16 @@ TEST(Tetrahedralize, KeepsASlitOpen) {
 
 TEST(Tetrahedralize, NamesAGapTooNarrow) {
   const std::string error = errorOf(slitBlock(0.001));
-  EXPECT_TRUE(has(error, "the gap of 0.001 m at (0.5, ")) << error;
+  EXPECT_TRUE(has(error, "the gap of 0.001 m near (0.5, ")) << error;
   EXPECT_TRUE(has(error, "widen the gap")) << error;
+  EXPECT_TRUE(has(error, "Repair with the mode `rebuild`")) << error;
+}
+
+TEST(Tetrahedralize, PlacesAreThoseOfTheFile) {
+  TriMesh mesh = slitBlock(0.001);
+  mesh.frame = {.metresPerUnit = 0.01, .up = FileFrame::Up::Z};
+  const std::string error = errorOf(mesh);
+  EXPECT_TRUE(has(error, "the gap of 0.001 m near (50, -")) << error;
 }
 
 TEST(Tetrahedralize, IsDeterministic) {
