@@ -6,13 +6,6 @@
 #include "base/parallel.h"
 
 namespace sherd {
-namespace {
-
-/// From so many pairs of node and site on it pays to find out which cells are near one another.
-constexpr std::size_t kManyPairs = std::size_t{1} << 18;
-
-}  // namespace
-
 Contenders::Contenders(LloydState& state, const Exec& exec)
     : s_(state), isByCell_(state.nodes * state.siteCount >= kManyPairs) {
   for (std::size_t j = 0; j < s_.siteCount; ++j)

@@ -86,9 +86,11 @@ Result<Partition> cvd(const std::shared_ptr<const Embedding>& embedding, const W
                           start->pinned > 0 ? "those pinned" : "one"));
 
   const LloydLimits limits{params.tolerance, params.maxIterations};
-  Lloyd lloyd = fromGiven ? Lloyd(*embedding, weights) : firstSites(*embedding, weights, start, exec);
+  Lloyd lloyd = fromGiven ? Lloyd(*embedding, weights, exec) : firstSites(*embedding, weights, start, exec);
   if (fromGiven) {
-    for (Eigen::Index j = 0; j < start->positions.cols(); ++j) lloyd.addSite(start->positions.col(j), exec);
+    for (Eigen::Index j = 0; j < start->positions.cols() && !exec.cancelled(); ++j)
+      lloyd.addSite(start->positions.col(j), exec);
+    if (exec.cancelled()) return cancelledError();
     lloyd.pin(static_cast<std::size_t>(start->pinned));
   }
   SHERD_ASSIGN(const Lloyd::End end, settle(degree, lloyd, *embedding, weights, params, limits, exec));

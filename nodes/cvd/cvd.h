@@ -5,11 +5,8 @@
 //
 // Deviations from the paper
 // - A site moves to Σ w x̄ / Σ w, the minimiser of E_D; equation (4) divides by the number of nodes. A cell
-// whose
-//   weights are all zero takes volumes V_n as weights; one without either, or without nodes, stays where it
-//   is.
-// - Labels are the nearest sites (`exact`); the paper's flooding (`flood`) is there to compare with. In
-// flooding,
+//   whose weights are all zero takes volumes V_n as weights; one without either, or without nodes, stays.
+// - Labels are the nearest sites (`exact`); the paper's flooding (`flood`) is there to compare with. There,
 //   distances and queue start anew in every pass (the listing never resets them), and W in line 11, which
 //   cancels where two sites are compared at one node and breaks where W = 0, plays no part. It visits what
 //   the graph of the mesh connects to a site's nearest node; nodes that no flood reaches take their nearest
@@ -42,7 +39,8 @@ enum class Labels { Exact, Flood };
 /// relaxation ω: sites move ω times as far as to their centroids until one label in a hundred or fewer
 /// changes in a pass; from then on just to them, so that all ends at centroids. For fixed labels a site's
 /// share of E_D is W ‖p − c‖² and a constant, and (1 − ω)² ≤ 1: for ω in (0, 2] E_D doesn't rise either.
-/// Measured (tests/bench): with 1.8 a fifth of the passes less, and E_D at the end 1.4 % lower, than with 1.
+/// Measured (tests/bench): with 1.8 E_D at the end is 1 to 5 % lower than with 1, in fewer passes or about as
+/// many.
 struct LloydLimits {
   double tolerance = 1e-7;
   int maxIterations = 1000;
@@ -66,8 +64,9 @@ struct CvdParams {
 /// another number. Says N, E_D, γ and how it ended. The result's sites are its cells' centroids (within the
 /// tolerance), where they aren't pinned, and its labels exactly the nearest of these sites, the lower index
 /// where two are equally near (`exact`). Errors: sizes or dimensions that don't match; coordinates, weights
-/// or sites that are not finite; neither sites nor degree; more pinned sites than the degree. Cost per pass
-/// O(nodes · N · d) at worst, far less where few sites move.
+/// or sites that are not finite; a body narrower than 1e-150 m or wider than 1e150 m, whose squares aren't
+/// numbers; neither sites nor degree; more pinned sites than the degree. Cost per pass O(nodes · N · d) at
+/// worst, far less where few sites move.
 Result<Partition> cvd(const std::shared_ptr<const Embedding>& embedding, const WeightField& weights,
                       const Sites* start, const CvdParams& params, const Exec& exec);
 
@@ -93,12 +92,15 @@ struct LloydState;
 /// site) a lower bound of the distance, lessened by how far the site has moved since, rules out most of the
 /// others (Elkan, ICML 2003); and from 2¹⁸ pairs on a cell's nodes are compared only with sites within twice
 /// its radius. Centroids: Σ w x̄ and Σ w over the cell's nodes in each block of sixteen in ascending order,
-/// these sums added over the blocks, and divided. Bounds take 4 bytes · nodes · N; beyond 256 MB they are not
-/// kept, which costs time only.
+/// these sums added over the blocks, and divided. Bounds take 4 to 8 bytes · nodes · N; beyond 256 MB they
+/// are not kept, which costs time only. The sums take 8 (d + 1) bytes for each pair of a block and a cell in
+/// it, some 1.3 pairs a block where nodes are numbered along a space-filling curve, as Tetrahedralize does;
+/// in random order all costs more, though nothing else changes.
 class Lloyd {
  public:
-  /// Input that passes checkLloydInput; kept by reference.
-  Lloyd(const Embedding& embedding, const WeightField& weights);
+  /// Input that passes checkLloydInput; kept by reference. Where `exec` is cancelled, here or below, labels
+  /// are incomplete from then on: there is nothing to do but to end.
+  Lloyd(const Embedding& embedding, const WeightField& weights, const Exec& exec = {});
   ~Lloyd();
   Lloyd(Lloyd&&) noexcept;
 
@@ -144,8 +146,9 @@ std::optional<Index> drawSite(const Lloyd& lloyd, const Embedding& embedding, co
                               Growth growth, std::int64_t seed);
 
 /// Passes of Lloyd's iteration after each site that is added. Measured on horse, bunny, mushroom and wall
-/// (tests/bench): reaching N takes 1 to 5 times one iteration at N, against 1 to 9 times where each addition
-/// is followed to its end; E_D at the end and the N found for a γ differ by less than another seed makes.
+/// (tests/bench): reaching N takes 1 to 5 times one iteration at N, against up to twice that where each
+/// addition is followed to its end; E_D at the end and the N found for a γ differ by less than another seed
+/// makes.
 inline constexpr int kGrowthPasses = 3;
 
 /// Adds a drawn site and runs kGrowthPasses of Lloyd's iteration: run() afterwards for the end of it. False

@@ -3,6 +3,7 @@
 #include <deque>
 #include <limits>
 
+#include "base/parallel.h"
 #include "cvd/distance.h"
 
 namespace sherd {
@@ -16,9 +17,15 @@ class Flood {
         label_(points.nodeCount, -1),
         distance_(points.nodeCount, std::numeric_limits<double>::infinity()) {}
 
-  std::vector<Index> run() {
-    for (std::size_t j = 0; j < points_.siteCount; ++j) offer(nearestNode(j), static_cast<Index>(j));
-    while (!queue_.empty()) {
+  std::vector<Index> run(const Exec& exec) {
+    std::vector<Index> nearest(points_.siteCount, 0);
+    parallelFor(exec, nearest.size(), 1 + (std::size_t{1} << 20) / (points_.nodeCount * points_.dimensions),
+                [&](std::size_t begin, std::size_t end) {
+                  for (std::size_t j = begin; j < end; ++j) nearest[j] = nearestNode(j);
+                });
+    for (std::size_t j = 0; j < nearest.size(); ++j) offer(nearest[j], static_cast<Index>(j));
+    constexpr std::size_t often = 4096;
+    for (std::size_t steps = 0; !queue_.empty() && (steps % often != 0 || !exec.cancelled()); ++steps) {
       const Index n = queue_.front();
       queue_.pop_front();
       for (const Index neighbour : graph_.neighbours(n)) offer(neighbour, label_[at(n)]);
@@ -58,8 +65,8 @@ class Flood {
 
 }  // namespace
 
-std::vector<Index> floodLabels(const FloodPoints& points, const NodeGraph& graph) {
-  return Flood(points, graph).run();
+std::vector<Index> floodLabels(const FloodPoints& points, const NodeGraph& graph, const Exec& exec) {
+  return Flood(points, graph).run(exec);
 }
 
 }  // namespace sherd

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "base/exec.h"
 #include "geometry/tet_edges.h"
 
 namespace sherd {
@@ -16,7 +17,8 @@ struct FloodPoints {
 };
 
 /// Per node its label, or −1 where no flood arrived. First in, first out, sites in order, neighbours
-/// ascending; a node takes another label only for a smaller distance, or an equal one and a lower site.
-std::vector<Index> floodLabels(const FloodPoints& points, const NodeGraph& graph);
+/// ascending; a node takes another label only for a smaller distance, or an equal one and a lower site. Ends
+/// early, with some labels missing, when cancelled.
+std::vector<Index> floodLabels(const FloodPoints& points, const NodeGraph& graph, const Exec& exec);
 
 }  // namespace sherd

@@ -9,8 +9,9 @@
 namespace sherd {
 namespace {
 
-constexpr std::uint64_t kSiteStream = 0x73697465;  // "site"
-constexpr double kSamePlace = 1e-12;               // of the embedding's diameter
+constexpr std::uint64_t kSiteStream = 0x73697465;            // "site"
+constexpr double kLeastSize = 1e-150, kLargestSize = 1e150;  // m: squares are numbers, with room to add
+constexpr double kSamePlace = 1e-12;                         // of the embedding's diameter
 
 /// The node that `uniform` in [0, 1) falls on when each is as wide as its share; none where all are 0.
 std::optional<Index> drawFrom(const std::vector<double>& share, double uniform) {
@@ -48,6 +49,9 @@ Result<void> checkLloydInput(const Embedding& embedding, const WeightField& weig
     return failure("the embedding is empty", {}, "embedding");
   if (!embedding.coordinates.allFinite() || !std::isfinite(embedding.diameter))
     return failure("the embedding holds a coordinate that is not a finite number", {}, "embedding");
+  if (embedding.diameter != 0 && !(embedding.diameter > kLeastSize && embedding.diameter < kLargestSize))
+    return failure(fmt::format("the body is {:g} m wide", embedding.diameter),
+                   "squares of distances have to be numbers: between 1e-150 and 1e150 m", "embedding");
   SHERD_CHECK(checkAmounts(weights.weight, nodes, "weights"));
   return checkAmounts(weights.volume, nodes, "volumes");
 }
@@ -79,12 +83,13 @@ Eigen::VectorXd bodyCentroid(const Embedding& embedding, const WeightField& weig
 
 Lloyd firstSites(const Embedding& embedding, const WeightField& weights, const Sites* pinned,
                  const Exec& exec) {
-  Lloyd lloyd(embedding, weights);
+  Lloyd lloyd(embedding, weights, exec);
   if (pinned == nullptr || pinned->pinned == 0) {
     lloyd.addSite(bodyCentroid(embedding, weights), exec);
     return lloyd;
   }
-  for (Eigen::Index j = 0; j < pinned->pinned; ++j) lloyd.addSite(pinned->positions.col(j), exec);
+  for (Eigen::Index j = 0; j < pinned->pinned && (j == 0 || !exec.cancelled()); ++j)
+    lloyd.addSite(pinned->positions.col(j), exec);
   lloyd.pin(static_cast<std::size_t>(pinned->pinned));
   return lloyd;
 }

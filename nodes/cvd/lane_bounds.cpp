@@ -1,6 +1,7 @@
 #include "cvd/lane_bounds.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/clones.h"
 
@@ -11,6 +12,7 @@ using Lanes __attribute__((vector_size(sizeof(LaneValues)), may_alias)) = float;
 
 constexpr double kUlp = 0x1p-24;      // of float, relative, when rounding to nearest
 constexpr float kUnderflow = 1e-36f;  // more than d · 2⁻¹⁴⁹ for d ≤ 10⁷ dimensions
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kUp = 1 + 0x1p-22f, kDown = 1 - 0x1p-22f;  // more than the rounding of a sum or a root
 
 }  // namespace
@@ -33,8 +35,9 @@ SHERD_CLONES unsigned compareLanes(const LaneValues* block, const LaneSite& site
   unsigned open = 0;
   for (std::size_t k = 0; k < kNodeLanes; ++k) {
     const float least = squares[k] - error[k], most = squares[k] + error[k];
-    low.lane[k] = std::sqrt(least > 0 ? least : 0) * kDown;
-    high.lane[k] = std::sqrt(most) * kUp;
+    // What overflowed, or isn't a number any more, is known to be nothing.
+    low.lane[k] = std::sqrt(least > 0 && least < kInfinity ? least : 0) * kDown;
+    high.lane[k] = most < kInfinity ? std::sqrt(most) * kUp : kInfinity;
     open |= static_cast<unsigned>(!(low.lane[k] > up[k])) << k;
   }
   return open;

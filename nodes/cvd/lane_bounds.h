@@ -21,9 +21,9 @@ struct LaneSite {
   float squaredNorm;
 };
 
-/// low ≤ ‖x_n − p‖ ≤ high for the nodes of a block, from ‖x‖² + ‖p‖² − 2 x·p, whose error is at most
-/// (d + 16) 2⁻²⁴ (‖x‖² + ‖p‖²). Returns a bit for each lane of which low > up isn't known: that of a node
-/// which the site may be nearer to than `up`. Where numbers overflow, that is all of them.
+/// 0 ≤ low ≤ ‖x_n − p‖ ≤ high, never NaN, for the nodes of a block, from ‖x‖² + ‖p‖² − 2 x·p, whose error is
+/// at most (d + 16) 2⁻²⁴ (‖x‖² + ‖p‖²). Returns a bit for each lane of which low > up isn't known: that of a
+/// node which the site may be nearer to than `up`. Where numbers overflow, that is all of them.
 unsigned compareLanes(const LaneValues* block, const LaneSite& site, std::size_t dimensions, const float* up,
                       LaneValues& low, LaneValues& high);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/parallel.h"
 #include "cvd/cvd.h"
 #include "cvd/distance.h"
 #include "cvd/flood.h"
@@ -13,7 +14,6 @@ namespace {
 
 constexpr std::size_t kCalm =
     100;  ///< one node in so many changes its label: sites move no farther from then on
-constexpr std::size_t kMaxBounds = std::size_t{1} << 26;
 
 /// Sites move farther than to their centroids until few labels change in a pass. After that it ends when no
 /// label changes or sites stay, or after so many passes.
@@ -38,13 +38,13 @@ Result<Lloyd::End> iterate(LloydState& state, const LloydLimits& limits, const E
 
 }  // namespace
 
-LloydState::LloydState(const Embedding& e, const WeightField& w)
+LloydState::LloydState(const Embedding& e, const WeightField& w, const Exec& exec)
     : embedding(e),
       weights(w),
       x(e.coordinates.data()),
       nodes(static_cast<std::size_t>(e.coordinates.cols())),
       dimensions(static_cast<std::size_t>(e.coordinates.rows())),
-      lanes(e.coordinates, e.diameter),
+      lanes(e.coordinates, e.diameter, exec),
       label(nodes, -1),
       up(lanes.blockCount() * kNodeLanes, std::numeric_limits<float>::infinity()),
       low(up.size(), 0.0f),
@@ -73,23 +73,27 @@ void LloydState::measureAll() {
 }
 
 /// Makes room for the bounds of one more site; gives bounds up where they would take too much.
-void LloydState::reserveBounds() {
+void LloydState::reserveBounds(const Exec& exec) {
   if (!bounded || siteCount < capacity) return;
   const std::size_t wider = std::max<std::size_t>(8, 2 * capacity);
   if (nodes * wider > kMaxBounds) {
     bounded = false;
-    bound = {};
+    bound.reset();
     return;
   }
-  std::vector<LaneValues> copy(lanes.blockCount() * wider, LaneValues{});
-  for (std::size_t b = 0; b < lanes.blockCount(); ++b)
-    std::copy_n(bound.data() + b * capacity, siteCount, copy.data() + b * wider);
+  auto copy = std::make_unique_for_overwrite<LaneValues[]>(lanes.blockCount() * wider);
+  parallelFor(exec, lanes.blockCount(), blockOf(wider * kNodeLanes), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      std::copy_n(bound.get() + b * capacity, siteCount, copy.get() + b * wider);
+      std::fill_n(copy.get() + b * wider + siteCount, wider - siteCount, LaneValues{});
+    }
+  });
   bound = std::move(copy);
   capacity = wider;
 }
 
 void LloydState::addSite(const Eigen::Ref<const Eigen::VectorXd>& at, const Exec& exec) {
-  reserveBounds();
+  reserveBounds(exec);
   const std::size_t j = siteCount++;
   p.resize(siteCount * dimensions);
   site.resize(siteCount * dimensions);
@@ -116,7 +120,7 @@ void LloydState::listMembers() {
 
 std::size_t LloydState::assignByFlooding(const NodeGraph& graph, const Exec& exec) {
   const std::vector<Index> before = label;
-  const std::vector<Index> flooded = floodLabels({x, p.data(), nodes, siteCount, dimensions}, graph);
+  const std::vector<Index> flooded = floodLabels({x, p.data(), nodes, siteCount, dimensions}, graph, exec);
   assign(exec);  // the nearest sites, for nodes that no flood has reached
   for (std::size_t n = 0; n < nodes; ++n) {
     if (flooded[n] < 0 || flooded[n] == label[n]) continue;
@@ -138,8 +142,8 @@ std::size_t LloydState::assignByFlooding(const NodeGraph& graph, const Exec& exe
   return changed;
 }
 
-Lloyd::Lloyd(const Embedding& embedding, const WeightField& weights)
-    : state_(std::make_unique<LloydState>(embedding, weights)) {}
+Lloyd::Lloyd(const Embedding& embedding, const WeightField& weights, const Exec& exec)
+    : state_(std::make_unique<LloydState>(embedding, weights, exec)) {}
 Lloyd::~Lloyd() = default;
 Lloyd::Lloyd(Lloyd&&) noexcept = default;
 

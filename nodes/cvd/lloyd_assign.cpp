@@ -213,6 +213,10 @@ class BlockLabels {
 
 /// Makes labels exact. Returns how many changed. Cost: where sites moved, and next to that.
 std::size_t LloydState::assign(const Exec& exec) {
+  if (exec.cancelled()) {
+    allStale = true;
+    return 0;
+  }
   const Contenders contenders(*this, exec);
   const std::vector<Index> blocks = contenders.blocks();
   const std::size_t grain = evenBlockOf(blocks.size(), dimensions * std::min<std::size_t>(siteCount, 32) * 4);
@@ -222,7 +226,7 @@ std::size_t LloydState::assign(const Exec& exec) {
     for (std::size_t i = begin; i < end; ++i) labels.visit(blocks[i]);
   });
   std::fill(moved.begin(), moved.end(), 0);
-  allStale = false;
+  allStale = exec.cancelled();
   return moveNodes(leaving);
 }
 

@@ -158,7 +158,10 @@ double LloydState::moveToCentroids(double relaxation, const Exec& exec) {
       if (!byWeight.centroid(sums[j], target)) {
         volumes = {};
         byVolume.refresh(members[j], volumes);
-        if (!byVolume.centroid(volumes, target)) continue;
+        if (!byVolume.centroid(volumes, target)) {
+          dirty[j] = 0;
+          continue;
+        }
       }
       const double* from = position(j);
       for (std::size_t i = 0; relaxation != 1 && i < dimensions; ++i)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,14 @@ namespace sherd {
 
 /// About how many operations are worth a task.
 inline constexpr std::size_t kTaskWork = std::size_t{1} << 16;
+
+/// From so many pairs of node and site on it pays to find out which cells are near one another.
+inline constexpr std::size_t kManyPairs = std::size_t{1} << 18;
+/// So many bounds of pairs are kept at most.
+inline constexpr std::size_t kMaxBounds = std::size_t{1} << 26;
+// Bounds are given up where twice the sites would be too many: cells are told apart long before, and where
+// they aren't, bounds are there to be read.
+static_assert(2 * kManyPairs < kMaxBounds / 8);
 
 /// How many items of so many operations each are worth a task.
 inline std::size_t blockOf(std::size_t operations) {
@@ -82,9 +91,9 @@ struct LloydState {
   // The distance of lane l of block b to site j is at least bound[b · capacity + j].lane[l] − drift[j].
   bool bounded = true;
   std::size_t capacity = 0;
-  std::vector<LaneValues> bound;
+  std::unique_ptr<LaneValues[]> bound;
 
-  LloydState(const Embedding& e, const WeightField& w);
+  LloydState(const Embedding& e, const WeightField& w, const Exec& exec);
 
   const double* position(std::size_t j) const { return p.data() + j * dimensions; }
   LaneSite lanesOf(std::size_t j) const { return {site.data() + j * dimensions, squaredNorm[j]}; }
@@ -95,7 +104,7 @@ struct LloydState {
 
   // lloyd.cpp
   void addSite(const Eigen::Ref<const Eigen::VectorXd>& at, const Exec& exec);
-  void reserveBounds();
+  void reserveBounds(const Exec& exec);
   void listMembers();
   std::size_t assignByFlooding(const NodeGraph& graph, const Exec& exec);
 

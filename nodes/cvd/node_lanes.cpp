@@ -23,14 +23,14 @@ std::vector<double> middleOf(const Eigen::MatrixXd& points) {
 
 }  // namespace
 
-NodeLanes::NodeLanes(const Eigen::MatrixXd& coordinates, double scale)
+NodeLanes::NodeLanes(const Eigen::MatrixXd& coordinates, double scale, const Exec& exec)
     : dimensions_(static_cast<std::size_t>(coordinates.rows())),
       blocks_((static_cast<std::size_t>(coordinates.cols()) + kNodeLanes - 1) / kNodeLanes),
       inverseScale_(scale > 0 && std::isfinite(1 / scale) ? 1 / scale : 1),
       origin_(middleOf(coordinates)),
       values_(std::make_unique_for_overwrite<LaneValues[]>(blocks_ * (dimensions_ + 1))) {
   const std::size_t grain = 1 + (std::size_t{1} << 11) / dimensions_;
-  parallelFor(Exec{}, blocks_, grain, [&](std::size_t begin, std::size_t end) {
+  parallelFor(exec, blocks_, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) convertBlock(coordinates, b);
   });
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/exec.h"
 #include "cvd/lane_bounds.h"
 
 namespace sherd {
@@ -17,7 +18,7 @@ class NodeLanes {
  public:
   /// d × n coordinates, finite, n ≥ 1; scale: about the size of the cloud (1 is taken where it isn't
   /// positive).
-  NodeLanes(const Eigen::MatrixXd& coordinates, double scale);
+  NodeLanes(const Eigen::MatrixXd& coordinates, double scale, const Exec& exec = {});
 
   std::size_t blockCount() const { return blocks_; }
   /// `dimensions` + 1 of them.

@@ -87,8 +87,14 @@ TEST(NodeLanes, WhatOverflowsStaysOpen) {
   LaneValues up;
   std::fill_n(up.lane, kNodeLanes, 1e30f);
   // A site so far off that its square is infinite may be farther than anything, but isn't known to be nearer.
-  const Compared far = compare(NodeLanes(x, 1), 0, Eigen::Vector3d(1e30, 0, 0), up);
-  EXPECT_EQ(far.open, 0xffffu);
+  for (const double place : {1e30, 1e40}) {  // finite as float, and not
+    const Compared far = compare(NodeLanes(x, 1), 0, Eigen::Vector3d(place, 0, 0), up);
+    EXPECT_EQ(far.open, 0xffffu);
+    for (std::size_t k = 0; k < kNodeLanes; ++k) {
+      EXPECT_EQ(far.low.lane[k], 0.0f);
+      EXPECT_EQ(far.high.lane[k], std::numeric_limits<float>::infinity());
+    }
+  }
   // A scale far below the body's size: nothing is known.
   const Compared tiny = compare(NodeLanes(x, 1e-25), 0, x.col(0), up);
   EXPECT_EQ(tiny.open, 0xffffu);
