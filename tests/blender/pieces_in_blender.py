@@ -122,7 +122,7 @@ def check_attributes(name, found, obj, place=turned, direct=turned):
                     1e-6 * size, f"{what}: positions")
         expect_near(found.uvs[0][here], obj.uvs[there], 1e-6, f"{what}: UVs")
         # Blender keeps normals as two angles of 16 bits, about others of its own.
-        expect_near(found.normals[here], direct(obj.normals[there].reshape(-1, 3)).reshape(-1, 3, 3), 5e-3,
+        expect_near(found.normals[here], direct(obj.normals[there].reshape(-1, 3)).reshape(-1, 3, 3), 1e-2,
                     f"{what}: normals")
 
 
