@@ -13,10 +13,6 @@ namespace sherd {
 
 inline constexpr std::size_t kLanes = 8;
 
-constexpr std::size_t paddedSize(std::size_t dimensions) {
-  return (dimensions + kLanes - 1) / kLanes * kLanes;
-}
-
 /// ‖a − b‖² of two vectors of any size; quickest for multiples of kLanes.
 double squaredDistance(const double* a, const double* b, std::size_t size);
 

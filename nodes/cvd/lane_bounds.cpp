@@ -13,8 +13,6 @@ using Lanes __attribute__((vector_size(sizeof(LaneValues)), may_alias)) = float;
 constexpr double kUlp = 0x1p-24;      // of float, relative, when rounding to nearest
 constexpr float kUnderflow = 1e-36f;  // more than d · 2⁻¹⁴⁹ for d ≤ 10⁷ dimensions
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kUp = 1 + 0x1p-22f, kDown = 1 - 0x1p-22f;  // more than the rounding of a sum or a root
-
 }  // namespace
 
 SHERD_CLONES unsigned compareLanes(const LaneValues* block, const LaneSite& site, std::size_t dimensions,
@@ -36,15 +34,15 @@ SHERD_CLONES unsigned compareLanes(const LaneValues* block, const LaneSite& site
   for (std::size_t k = 0; k < kNodeLanes; ++k) {
     const float least = squares[k] - error[k], most = squares[k] + error[k];
     // What overflowed, or isn't a number any more, is known to be nothing.
-    low.lane[k] = std::sqrt(least > 0 && least < kInfinity ? least : 0) * kDown;
-    high.lane[k] = most < kInfinity ? std::sqrt(most) * kUp : kInfinity;
+    low.lane[k] = std::sqrt(least > 0 && least < kInfinity ? least : 0) * kBoundDown;
+    high.lane[k] = most < kInfinity ? std::sqrt(most) * kBoundUp : kInfinity;
     open |= static_cast<unsigned>(!(low.lane[k] > up[k])) << k;
   }
   return open;
 }
 
 SHERD_CLONES void keepBounds(const LaneValues& __restrict__ low, float drift, LaneValues& __restrict__ kept) {
-  for (std::size_t k = 0; k < kNodeLanes; ++k) kept.lane[k] = (low.lane[k] + drift) * kDown;
+  for (std::size_t k = 0; k < kNodeLanes; ++k) kept.lane[k] = (low.lane[k] + drift) * kBoundDown;
 }
 
 SHERD_CLONES void findOpenLanes(const LaneValues* __restrict__ bound, const float* __restrict__ drift,

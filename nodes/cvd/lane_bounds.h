@@ -10,6 +10,9 @@ namespace sherd {
 
 inline constexpr std::size_t kNodeLanes = 16;
 
+/// Bounds times these stay bounds: more than what a sum, a product or a root is rounded by.
+inline constexpr float kBoundUp = 1 + 0x1p-22f, kBoundDown = 1 - 0x1p-22f;
+
 /// One number of each of sixteen nodes.
 struct alignas(4 * kNodeLanes) LaneValues {
   float lane[kNodeLanes];

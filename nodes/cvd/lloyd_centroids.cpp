@@ -9,8 +9,6 @@
 namespace sherd {
 namespace {
 
-constexpr float kUp = 1 + 0x1p-22f, kDown = 1 - 0x1p-22f;  ///< more than the rounding of an addition
-
 Index blockOfNode(Index n) { return n / static_cast<Index>(kNodeLanes); }
 
 /// What the centroid of a cell is taken from, by weights or by volumes.
@@ -133,12 +131,12 @@ void LloydState::place(std::size_t j, const double* at) {
 void LloydState::moveTo(std::size_t j, const double* at, double step) {
   place(j, at);
   const float by = lanes.atLeast(step);
-  drift[j] = (drift[j] + by) * kUp;
+  drift[j] = (drift[j] + by) * kBoundUp;
   moved[j] = resized[j] = 1;
   for (const Index n : members[j]) {
     const auto lane = static_cast<std::size_t>(n);
-    up[lane] = (up[lane] + by) * kUp;
-    low[lane] = low[lane] * kDown - by;
+    up[lane] = (up[lane] + by) * kBoundUp;
+    low[lane] = low[lane] * kBoundDown - by;
     isTight[lane] = 0;
   }
 }

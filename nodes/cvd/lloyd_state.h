@@ -57,6 +57,8 @@ struct CellSums {
   std::vector<double> sum;  ///< dimensions + 1 for each of `block`
 };
 
+/// Plain data, which the functions below keep in step. Cost of each is that of what
+/// moved or changed, and O(N).
 struct LloydState {
   const Embedding& embedding;
   const WeightField& weights;

@@ -18,6 +18,11 @@
 #include "support/tet_families.h"
 
 namespace sherd::bench {
+/// Zeros behind a vector change nothing of its distances.
+constexpr std::size_t paddedSize(std::size_t dimensions) {
+  return (dimensions + kLanes - 1) / kLanes * kLanes;
+}
+
 /// As in cvd/distance.cpp, in the same order of summation.
 SHERD_CLONES float squaredDistanceOf(const float* a, const float* b, std::size_t size) {
   float sum[kLanes] = {};
